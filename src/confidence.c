@@ -1,0 +1,35 @@
+#include "confidence.h"
+
+#include "vector.h"
+
+/* Correlation coefficient of two vectors; 0 where one of them is flat. */
+static ast_real correlation(const float *x, const float *y, int n) {
+    ast_real sum_x = 0, sum_y = 0;
+    for (int d = 0; d < n; d++) {
+        sum_x += (ast_real)x[d];
+        sum_y += (ast_real)y[d];
+    }
+    const ast_real cross = ast_dot(x, y, n) - sum_x * sum_y / n;
+    const ast_real xx = ast_dot(x, x, n) - sum_x * sum_x / n, yy = ast_dot(y, y, n) - sum_y * sum_y / n;
+    const ast_real flat = (ast_real)1e-9 * n;
+    return xx > flat && yy > flat ? cross / ast_sqrt(xx * yy) : 0;
+}
+
+float ast_confidence_score(const float *patch, const float *anchor, const struct ast_bag *bag) {
+    const ast_real first = correlation(patch, anchor, bag->dim);
+    ast_real likest = first;
+    for (int j = 0; j < bag->count; j++) {
+        const ast_real c = correlation(patch, ast_bag_mean(bag, j), bag->dim);
+        if (c > likest) likest = c;
+    }
+    const ast_real score = (first + likest) / 2;
+    return score <= 0 ? 0.0f : score >= 1 ? 1.0f : (float)score;
+}
+
+struct ast_confidence ast_confidence_next(struct ast_confidence last, const ast_config *cfg, float score) {
+    struct ast_confidence next = {AST_TRACKING, 0};
+    if (score < cfg->score_lost) next.low = last.low < cfg->lost_after ? last.low + 1 : cfg->lost_after;
+    if (score < cfg->score_uncertain)
+        next.status = last.status == AST_LOST || next.low == cfg->lost_after ? AST_LOST : AST_UNCERTAIN;
+    return next;
+}

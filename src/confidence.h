@@ -1,0 +1,20 @@
+/* How sure the tracker is: a score of the winner, and a status with hysteresis made from it. */
+#ifndef AST_CONFIDENCE_H
+#define AST_CONFIDENCE_H
+
+#include "asttrack.h"
+#include "bag.h"
+
+struct ast_confidence {
+    int32_t status; /* AST_TRACKING, AST_UNCERTAIN, AST_LOST */
+    int32_t low;    /* consecutive frames below score_lost */
+};
+
+/* Likeness of the winning patch to the object as known: the mean of its normalised correlation with the first model (anchor, dim
+ * floats) and with the model of the bag that is most like it, clipped to [0, 1]. The first model cannot drift, and the bag knows the
+ * appearances since. */
+float ast_confidence_score(const float *patch, const float *anchor, const struct ast_bag *bag);
+/* Status after a frame with this score. LOST needs lost_after low frames in a row and lasts until a score of score_uncertain. */
+struct ast_confidence ast_confidence_next(struct ast_confidence last, const ast_config *cfg, float score);
+
+#endif

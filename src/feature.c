@@ -1,0 +1,75 @@
+#include "feature.h"
+
+/* A part of the vector. A new feature is a new file and a row below. */
+struct part {
+    int (*length)(const ast_config *cfg); /* 0: not in this configuration */
+    float (*weight)(const ast_config *cfg);
+    void (*layout)(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena);
+    void (*prepare)(struct ast_features *f, const ast_frame *image, float object_width, float object_height); /* NULL: nothing */
+    void (*vector)(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out);
+};
+
+static int patch_length(const ast_config *cfg) {
+    return cfg->patch_weight > 0.0f ? cfg->patch_width * cfg->patch_height : 0;
+}
+static float patch_weight(const ast_config *cfg) {
+    return cfg->patch_weight;
+}
+static void patch_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
+    ast_sampler_layout(&f->patch, cfg, arena);
+}
+static void patch_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out) {
+    ast_sampler_patch(&f->patch, image, window, out);
+}
+
+static int gradient_length(const ast_config *cfg) {
+    return cfg->gradient_weight > 0.0f ? cfg->gradient_cells * cfg->gradient_cells * AST_DIRECTIONS : 0;
+}
+static float gradient_weight(const ast_config *cfg) {
+    return cfg->gradient_weight;
+}
+static void gradient_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
+    ast_gradient_layout(&f->gradient, cfg, arena);
+}
+static void gradient_prepare(struct ast_features *f, const ast_frame *image, float object_width, float object_height) {
+    ast_gradient_prepare(&f->gradient, image, object_width, object_height);
+}
+static void gradient_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out) {
+    (void)image;
+    ast_gradient_cells(&f->gradient, window, out);
+}
+
+static const struct part parts[] = {
+    {patch_length, patch_weight, patch_layout, NULL, patch_vector},
+    {gradient_length, gradient_weight, gradient_layout, gradient_prepare, gradient_vector},
+};
+enum { PARTS = sizeof parts / sizeof parts[0] };
+
+int ast_features_length(const ast_config *cfg) {
+    int length = 0;
+    for (int p = 0; p < PARTS; p++) length += parts[p].length(cfg);
+    return length;
+}
+
+void ast_features_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
+    f->cfg = *cfg;
+    for (int p = 0; p < PARTS; p++)
+        if (parts[p].length(cfg) > 0) parts[p].layout(f, cfg, arena);
+}
+
+void ast_features_prepare(struct ast_features *f, const ast_frame *image, float object_width, float object_height) {
+    for (int p = 0; p < PARTS; p++)
+        if (parts[p].length(&f->cfg) > 0 && parts[p].prepare != NULL) parts[p].prepare(f, image, object_width, object_height);
+}
+
+void ast_features_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *vector) {
+    for (int p = 0; p < PARTS; p++) {
+        const int length = parts[p].length(&f->cfg);
+        if (length == 0) continue;
+        parts[p].vector(f, image, window, vector);
+        const float weight = parts[p].weight(&f->cfg);
+        if (weight != 1.0f)
+            for (int i = 0; i < length; i++) vector[i] *= weight;
+        vector += length;
+    }
+}

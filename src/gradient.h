@@ -1,0 +1,25 @@
+/* Oriented gradients: cells x cells bins over the window, in each the energy of the image gradient in AST_DIRECTIONS directions. */
+#ifndef AST_GRADIENT_H
+#define AST_GRADIENT_H
+
+#include "arena.h"
+#include "asttrack.h"
+
+enum { AST_DIRECTIONS = 8 };
+
+struct ast_gradient {
+    int cells;         /* in each axis; 0: no such feature */
+    int side;          /* most pixels of an image in width and height */
+    int width, height; /* of the current maps */
+    uint8_t *maps;     /* AST_DIRECTIONS interleaved a pixel, in steps that keep the blurred responses' precision in a byte */
+    float *energy;     /* squared gradient, then its local mean: one float a pixel */
+    float *row;        /* one row of maps before and while it is blurred: twice AST_DIRECTIONS floats a pixel */
+};
+
+void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct ast_arena *arena);
+/* Makes the maps of an image, for an object of about this size in it. */
+void ast_gradient_prepare(struct ast_gradient *g, const ast_frame *image, float object_width, float object_height);
+/* The cells of a window of that image: cells x cells x AST_DIRECTIONS floats of unit norm (a flat window stays small). */
+void ast_gradient_cells(const struct ast_gradient *g, const ast_box *window, float *out);
+
+#endif

@@ -1,0 +1,388 @@
+/* The life of a tracker, and the order of the stages: particles, patches, subspaces, distance, decision, history and bag. */
+#include "tracker.h"
+
+#include <string.h>
+#ifndef AST_NO_HEAP
+#include <stdlib.h>
+#endif
+
+#include "backend.h"
+#include "decision.h"
+#include "frame.h"
+#include "subspace.h"
+
+/* ---- Memory ---- */
+
+static void cloud_layout(struct ast_cloud *cloud, int count, struct ast_arena *arena) {
+    cloud->count = count;
+    cloud->x = ast_arena_take(arena, (size_t)count, sizeof *cloud->x);
+    cloud->y = ast_arena_take(arena, (size_t)count, sizeof *cloud->y);
+    cloud->scale = ast_arena_take(arena, (size_t)count, sizeof *cloud->scale);
+    cloud->weight = ast_arena_take(arena, (size_t)count, sizeof *cloud->weight);
+}
+
+/* Fills *t and hands out the arena; the caller has taken the tracker itself. Runs once to count and once to bind. */
+static void layout(struct ast_tracker *t, const ast_config *cfg, const struct ast_linalg *la, struct ast_arena *arena) {
+    enum { FLOATS = AST_ALIGNMENT / sizeof(float) };
+    memset(t, 0, sizeof *t);
+    t->cfg = *cfg;
+    t->la = la;
+    t->scoring = ast_scoring_of(cfg);
+    t->dim = ast_features_length(cfg);
+    t->stride = (t->dim + FLOATS - 1) / FLOATS * FLOATS;
+
+    const size_t stride = (size_t)t->stride;
+    cloud_layout(&t->cloud, cfg->particles, arena);
+    ast_history_layout(&t->history, t->dim, t->stride, cfg->history, arena);
+    ast_bag_layout(&t->bag, t->dim, t->stride, t->scoring->lead(cfg), cfg->basis_size, cfg->bag_size, cfg->keep_first, arena);
+    t->background.size = cfg->background;
+    t->background.dim = t->dim;
+    t->background.stride = t->stride;
+    if (cfg->background > 0 && t->bag.columns != NULL) {
+        t->background.set = ast_bag_basis(&t->bag, 0) - stride * (size_t)cfg->background; /* the lead's last columns */
+        t->background.mean = t->background.set - stride;
+    }
+    t->anchor = ast_arena_take(arena, stride, sizeof *t->anchor);
+
+    cloud_layout(&t->proposal, cfg->particles, arena);
+    ast_view_layout(&t->view, cfg, arena);
+    ast_features_layout(&t->features, cfg, arena);
+    t->scoring->layout(&t->scoring_scratch, cfg, la, t->dim, arena);
+    t->tile = ast_arena_take(arena, stride * AST_TILE, sizeof *t->tile);
+    t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
+    t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
+    t->basis = ast_arena_take(arena, stride * (size_t)cfg->basis_size, sizeof *t->basis);
+    t->work_count = ast_subspace_work(la, t->dim, cfg->history + 1);
+    t->work = ast_arena_take(arena, t->work_count, sizeof *t->work);
+}
+
+size_t ast_mem_size_backend(const ast_config *cfg, const struct ast_linalg *la) {
+    struct ast_tracker counted;
+    struct ast_arena arena = {NULL, 0};
+    if (ast_config_check(cfg, NULL) != AST_OK) return 0;
+    (void)ast_arena_take(&arena, 1, sizeof counted);
+    layout(&counted, cfg, la, &arena);
+    return arena.used + AST_ALIGNMENT - 1; /* so that a block at any address will do */
+}
+
+size_t ast_mem_size(const ast_config *cfg) {
+    return ast_mem_size_backend(cfg, ast_default_linalg());
+}
+
+int ast_init_backend(ast_tracker **out, const ast_config *cfg, const struct ast_linalg *la, void *mem, size_t mem_size) {
+    if (out == NULL) return AST_E_NULL;
+    const int error = ast_config_check(cfg, NULL);
+    if (error != AST_OK) return error;
+    const size_t needed = ast_mem_size_backend(cfg, la);
+    void *owned = NULL;
+    if (mem == NULL) {
+#ifdef AST_NO_HEAP
+        return AST_E_NO_HEAP;
+#else
+        owned = malloc(needed);
+        if (owned == NULL) return AST_E_OUT_OF_MEMORY;
+#endif
+    } else if (mem_size < needed) {
+        return AST_E_ARENA;
+    }
+    struct ast_arena arena = {ast_align(owned != NULL ? owned : mem), 0};
+    struct ast_tracker *t = ast_arena_take(&arena, 1, sizeof *t);
+    layout(t, cfg, la, &arena);
+    t->owned = owned;
+    if (la->prepare() != 0) {
+        ast_free(t);
+        return AST_E_BACKEND;
+    }
+    *out = t;
+    return AST_OK;
+}
+
+int ast_init(ast_tracker **out, const ast_config *cfg, void *mem, size_t mem_size) {
+    return ast_init_backend(out, cfg, ast_default_linalg(), mem, mem_size);
+}
+
+void ast_free(ast_tracker *t) {
+#ifndef AST_NO_HEAP
+    if (t != NULL) free(t->owned);
+#else
+    (void)t;
+#endif
+}
+
+/* ---- Models ---- */
+
+static ast_box window_of(const struct ast_tracker *t, const struct ast_state *state) {
+    const float w = t->box_width * state->scale, h = t->box_height * state->scale;
+    const ast_box window = {state->x - 0.5f * w, state->y - 0.5f * h, w, h};
+    return window;
+}
+
+/* Shows the part of a frame around centres between (left, top) and (right, bottom), with room for the object's box at this scale and
+ * for its surroundings, and prepares the features there. */
+static void look(struct ast_tracker *t, const ast_frame *frame, float left, float top, float right, float bottom, float scale) {
+    const float reach = 1.25f; /* boxes around a centre: half for the object, the rest for background */
+    const float w = t->box_width * scale, h = t->box_height * scale;
+    const ast_box object = {0.0f, 0.0f, w, h};
+    const ast_box region = {left - reach * w, top - reach * h, right - left + 2.0f * reach * w, bottom - top + 2.0f * reach * h};
+    ast_view_show(&t->view, frame, &region, &object);
+    ast_features_prepare(&t->features, &t->view.image, w / t->view.pixel, h / t->view.pixel);
+}
+
+/* The feature vector of a box, in the frame that was looked at. */
+static void describe(struct ast_tracker *t, const ast_box *box, float *vector) {
+    const ast_box window = ast_view_box(&t->view, box);
+    ast_features_vector(&t->features, &t->view.image, &window, vector);
+}
+
+/* The mean that draw_background will give after a start: the same draws, without keeping them. mean, vector: dim. */
+static void foresee_background_mean(struct ast_tracker *t, const ast_box *object, float *mean, float *vector) {
+    struct ast_random random;
+    ast_random_seed(&random, t->cfg.seed);
+    memset(mean, 0, (size_t)t->dim * sizeof *mean);
+    for (int z = 0; z < t->background.size; z++) {
+        const ast_box box = ast_background_box(object, &random);
+        describe(t, &box, vector);
+        for (int d = 0; d < t->dim; d++) mean[d] += vector[d] / (float)t->background.size;
+    }
+}
+
+/* Draws all background vectors around the object's box into the set. */
+static void draw_background(struct ast_tracker *t, const ast_box *object) {
+    for (int z = 0; z < t->background.size; z++) {
+        const ast_box box = ast_background_box(object, &t->random);
+        describe(t, &box, t->background.set + (size_t)z * (size_t)t->stride);
+    }
+    if (t->background.size > 0) ast_background_average(&t->background);
+}
+
+/* Draws a frame's share of them anew. */
+static void refresh_background(struct ast_tracker *t, const ast_box *object) {
+    for (int i = 0; i < t->cfg.background_refresh; i++) {
+        const int slot = (int)(ast_random_bits(&t->random) % (uint32_t)t->background.size);
+        const ast_box box = ast_background_box(object, &t->random);
+        describe(t, &box, t->tile);
+        ast_background_replace(&t->background, slot, t->tile);
+    }
+}
+
+/* Fits the subspace of a set into t->mean and t->basis. A raw basis starts from the background's mean where there is a background. */
+static int fit_images(struct ast_tracker *t, const struct ast_images *images, const float *background_mean, int *rank) {
+    const int failed =
+        ast_subspace_of(t->la, images, t->cfg.basis == AST_BASIS_CENTRED, t->background.size > 0 ? background_mean : NULL,
+                        t->cfg.basis_size, t->mean, t->basis, t->stride, rank, t->work, t->work_count);
+    return failed ? AST_E_BACKEND : AST_OK;
+}
+
+/* The same for the history and one vector more. */
+static int fit_winner(struct ast_tracker *t, const float *patch, int *rank) {
+    const float *column[AST_MAX_HISTORY + 1];
+    struct ast_images images = {column, t->history.count, t->dim};
+    for (int j = 0; j < t->history.count; j++) column[j] = ast_history_patch(&t->history, j);
+    column[images.count++] = patch;
+    return fit_images(t, &images, t->background.mean, rank);
+}
+
+/* Puts what was fitted into the bag. */
+static void add_model(struct ast_tracker *t, int rank) {
+    if (t->cfg.model == AST_MODEL_LINEAR) memset(t->mean, 0, (size_t)t->dim * sizeof *t->mean);
+    ast_bag_add(&t->bag, t->mean, t->basis, rank);
+}
+
+/* ---- Start ---- */
+
+int ast_start(ast_tracker *t, const ast_frame *frame, const ast_box *box) {
+    return ast_start_sequence(t, frame, box, 1);
+}
+
+/* The state of a box whose object had the first box at scale 1; areas decide where the sides disagree. */
+static struct ast_state state_of(const ast_config *cfg, const ast_box *box, const ast_box *first) {
+    const float scale = sqrtf((box->w / first->w) * (box->h / first->h));
+    struct ast_state state = {box->x + 0.5f * box->w, box->y + 0.5f * box->h, scale};
+    if (state.scale < cfg->scale_min) state.scale = cfg->scale_min;
+    if (state.scale > cfg->scale_max) state.scale = cfg->scale_max;
+    return state;
+}
+
+int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *boxes, int32_t count) {
+    if (t == NULL || frames == NULL || boxes == NULL) return AST_E_NULL;
+    if (count < 1) return AST_E_RANGE;
+    for (int32_t f = 0; f < count; f++) {
+        int error = ast_frame_check(&frames[f]);
+        if (error == AST_OK) error = ast_box_check(&boxes[f], &frames[f]);
+        if (error != AST_OK) return error;
+    }
+    /* What can fail comes first, and works on scratch: the patches given go to the tile, the first model's subspace to the fit. */
+    const struct ast_tracker before = *t; /* the object's size and the view, which making patches needs */
+    const int32_t used = count < t->cfg.history ? count : t->cfg.history;
+    const struct ast_state last = state_of(&t->cfg, &boxes[count - 1], &boxes[0]);
+    const float *column[AST_MAX_HISTORY];
+    const struct ast_images images = {column, used, t->dim};
+    int rank = 0;
+    t->box_width = boxes[0].w;
+    t->box_height = boxes[0].h;
+    for (int32_t j = 0; j < used; j++) {
+        const ast_box *box = &boxes[count - used + j];
+        const struct ast_state state = state_of(&t->cfg, box, &boxes[0]);
+        float *patch = t->tile + (size_t)j * (size_t)t->stride;
+        look(t, &frames[count - used + j], state.x, state.y, state.x, state.y, state.scale);
+        describe(t, box, patch);
+        column[j] = patch;
+    }
+    ast_images_mean(&images, t->mean);
+    float *background_mean = t->tile + (size_t)AST_MAX_HISTORY * (size_t)t->stride; /* behind the patches */
+    if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, background_mean + t->stride);
+    if (used == t->cfg.history && fit_images(t, &images, background_mean, &rank) != AST_OK) {
+        *t = before;
+        return AST_E_BACKEND;
+    }
+
+    t->started = 1;
+    t->frame = 0;
+    t->since_model = 0;
+    t->models = 0;
+    t->estimate = last;
+    t->velocity_x = t->velocity_y = 0.0f;
+    t->confidence.status = AST_TRACKING;
+    t->confidence.low = 0;
+    ast_random_seed(&t->random, t->cfg.seed);
+    ast_cloud_gather(&t->cloud, &t->estimate);
+    ast_history_clear(&t->history);
+    for (int32_t j = 0; j < used; j++) ast_history_push(&t->history, column[j]);
+    draw_background(t, &boxes[count - 1]);
+    memcpy(t->anchor, t->mean, (size_t)t->dim * sizeof *t->anchor);
+    ast_bag_clear(&t->bag);
+    if (used == t->cfg.history) add_model(t, rank);
+    return AST_OK;
+}
+
+/* ---- Step ---- */
+
+/* Until P patches are known there is no model, and a candidate's set would hold little but itself: candidates are compared with the
+ * mean of the patches so far, by the squared distance that takes the Mahalanobis term's place. */
+static void distances_to_mean(struct ast_tracker *t, const float *mean, const float *patches, int count, float *distance) {
+    const ast_real weight = t->cfg.model == AST_MODEL_AFFINE ? (ast_real)t->cfg.alpha : 1;
+    for (int i = 0; i < count; i++) {
+        const float *patch = patches + (size_t)i * (size_t)t->stride;
+        ast_real sum = 0;
+        for (int d = 0; d < t->dim; d++) {
+            const ast_real difference = (ast_real)patch[d] - (ast_real)mean[d];
+            sum += difference * difference;
+        }
+        distance[i] = (float)(weight * sum);
+    }
+}
+
+/* Distances of all proposed particles to all models, tile by tile. */
+static int score_particles(struct ast_tracker *t, int models) {
+    const struct ast_scene scene = {&t->cfg, t->la, &t->history, &t->bag, t->background.size, t->work, t->work_count};
+    if (t->bag.count == 0) {
+        const float *column[AST_MAX_HISTORY];
+        const struct ast_images images = {column, t->history.count, t->dim};
+        for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
+        ast_images_mean(&images, t->mean);
+    } else if (t->scoring->prepare(&t->scoring_scratch, &scene) != 0) {
+        return AST_E_BACKEND;
+    }
+    for (int first = 0; first < t->proposal.count; first += AST_TILE) {
+        const int count = t->proposal.count - first < AST_TILE ? t->proposal.count - first : AST_TILE;
+        float *distance = t->distance + (size_t)first * (size_t)models;
+        for (int i = 0; i < count; i++) {
+            const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
+            const ast_box window = window_of(t, &state);
+            describe(t, &window, t->tile + (size_t)i * (size_t)t->stride);
+        }
+        if (t->bag.count == 0)
+            distances_to_mean(t, t->mean, t->tile, count, distance);
+        else if (t->scoring->tile(&t->scoring_scratch, &scene, t->tile, count, distance) != 0)
+            return AST_E_BACKEND;
+    }
+    return AST_OK;
+}
+
+/* Looks at all that the proposed particles can show. */
+static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
+    const struct ast_cloud *cloud = &t->proposal;
+    float left = cloud->x[0], right = left, top = cloud->y[0], bottom = top;
+    for (int i = 1; i < cloud->count; i++) {
+        if (cloud->x[i] < left) left = cloud->x[i];
+        if (cloud->x[i] > right) right = cloud->x[i];
+        if (cloud->y[i] < top) top = cloud->y[i];
+        if (cloud->y[i] > bottom) bottom = cloud->y[i];
+    }
+    look(t, frame, left, top, right, bottom, t->estimate.scale);
+}
+
+static void copy_cloud(struct ast_cloud *to, const struct ast_cloud *from) {
+    const size_t bytes = (size_t)from->count * sizeof(float);
+    memcpy(to->x, from->x, bytes);
+    memcpy(to->y, from->y, bytes);
+    memcpy(to->scale, from->scale, bytes);
+    memcpy(to->weight, from->weight, bytes);
+}
+
+int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
+    if (t == NULL) return AST_E_NULL;
+    int error = ast_frame_check(frame);
+    if (error != AST_OK) return error;
+    if (!t->started) return AST_E_NOT_STARTED;
+
+    /* Everything below until the commit works on scratch. */
+    struct ast_random random = t->random;
+    ast_cloud_resample(&t->cloud, &t->proposal, &random);
+    ast_cloud_shift(&t->proposal, t->cfg.velocity * t->velocity_x, t->cfg.velocity * t->velocity_y);
+    ast_cloud_diffuse(&t->proposal, &t->cfg, frame, &random);
+    if (t->cfg.incumbent) {
+        t->proposal.x[0] = t->estimate.x;
+        t->proposal.y[0] = t->estimate.y;
+        t->proposal.scale[0] = t->estimate.scale;
+    }
+    look_at_cloud(t, frame);
+
+    const int models = t->bag.count > 0 ? t->bag.count : 1;
+    t->models = 0; /* until the distances are whole again */
+    error = score_particles(t, models);
+    if (error != AST_OK) return error;
+    const int best = ast_decide(t->distance, t->proposal.count, models, &t->cfg, t->proposal.weight);
+    const struct ast_state estimate = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
+    const ast_box box = window_of(t, &estimate);
+    float nearest = t->distance[(size_t)best * (size_t)models];
+    for (int j = 1; j < models; j++) {
+        const float distance = t->distance[(size_t)best * (size_t)models + (size_t)j];
+        if (distance < nearest) nearest = distance;
+    }
+
+    /* The winner's vector again (the tile has been reused), its score, and its subspace when a model is due. */
+    float *patch = t->tile;
+    describe(t, &box, patch);
+    const float score = ast_confidence_score(patch, t->anchor, &t->bag);
+    const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
+    const int model_due = first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval);
+    int rank = 0;
+    if (model_due) error = fit_winner(t, patch, &rank);
+    if (error != AST_OK) return error;
+
+    t->random = random;
+    t->frame++;
+    t->since_model = model_due ? 0 : t->since_model + 1;
+    t->velocity_x = 0.5f * (t->velocity_x + estimate.x - t->estimate.x);
+    t->velocity_y = 0.5f * (t->velocity_y + estimate.y - t->estimate.y);
+    t->estimate = estimate;
+    t->confidence = ast_confidence_next(t->confidence, &t->cfg, score);
+    t->models = models;
+    copy_cloud(&t->cloud, &t->proposal);
+    ast_history_push(&t->history, patch);
+    if (model_due) add_model(t, rank);
+    refresh_background(t, &box);
+
+    if (result != NULL) {
+        result->box = box;
+        result->scale = estimate.scale;
+        result->score = score;
+        result->distance = nearest;
+        result->effective_particles = ast_cloud_effective(&t->cloud);
+        result->status = t->confidence.status;
+        result->best = best;
+        result->frame = t->frame;
+    }
+    return AST_OK;
+}
