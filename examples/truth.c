@@ -1,0 +1,173 @@
+#include "truth.h"
+
+#include "options.h"
+#include "report.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Far longer than four numbers can be. */
+#define LINE_SIZE 512
+
+static const char *skip_separators(const char *at) {
+    return at + strspn(at, " \t,");
+}
+
+static bool is_nan(const char **at) {
+    static const char name[] = "nan";
+    for (size_t i = 0; i < 3; ++i) {
+        const char c = (*at)[i];
+        if (c != name[i] && c != name[i] - 'a' + 'A') return false;
+    }
+    *at += 3;
+    return true;
+}
+
+/* NULL, or why the line is not a box. */
+static const char *parse_line(const char *line, ast_box *box) {
+    double number[4];
+    int nans = 0;
+    const char *at = line + strspn(line, " \t");
+    for (int i = 0; i < 4; ++i) {
+        if (is_nan(&at)) {
+            ++nans;
+        } else if (!option_parse_real(&at, &number[i])) {
+            return "not four numbers x,y,w,h";
+        }
+        const char *next = skip_separators(at);
+        if (i < 3 && next == at) return "not four numbers x,y,w,h";
+        at = next;
+    }
+    if (*at != '\0') return "more than four numbers x,y,w,h";
+    if (nans != 0 && nans != 4) return "nan in part of a box";
+    if (nans == 4) {
+        const ast_box none = {NAN, NAN, NAN, NAN};
+        *box = none;
+        return NULL;
+    }
+    if (!(number[2] > 0.0) || !(number[3] > 0.0)) {
+        return "a box without area (nan,nan,nan,nan stands for no box)";
+    }
+    const ast_box read = {(float)number[0], (float)number[1], (float)number[2], (float)number[3]};
+    *box = read;
+    return NULL;
+}
+
+static bool append(ground_truth *t, int32_t *capacity, const ast_box *box) {
+    if (t->count == *capacity) {
+        const int32_t larger = *capacity == 0 ? 1024 : 2 * *capacity;
+        ast_box *boxes = larger > 0 ? realloc(t->boxes, (size_t)larger * sizeof *boxes) : NULL;
+        if (boxes == NULL) return false;
+        t->boxes = boxes;
+        *capacity = larger;
+    }
+    t->boxes[t->count++] = *box;
+    return true;
+}
+
+/* Reads one line without its end ("\n" or "\r\n"). 1 for a line, 0 at the end of the file, -1 when it is too long or holds a zero
+ * byte, either of which no text of four numbers has. */
+static int read_line(FILE *stream, char *line) {
+    size_t length = 0;
+    int c;
+    while ((c = getc(stream)) != EOF && c != '\n') {
+        if (c == '\0' || length + 1 == LINE_SIZE) return -1;
+        line[length++] = (char)c;
+    }
+    if (length > 0 && line[length - 1] == '\r') {
+        --length;
+    }
+    line[length] = '\0';
+    return c == EOF && length == 0 ? 0 : 1;
+}
+
+static bool read_stream(ground_truth *t, const char *path, FILE *stream) {
+    char line[LINE_SIZE];
+    int32_t capacity = 0, blank = 0; /* blank: line number of an empty line, fine where only empty lines follow */
+    for (int32_t number = 1;; ++number) {
+        const int got = read_line(stream, line);
+        if (got == 0) break;
+        ast_box box;
+        const char *reason = got < 0 ? "not four numbers x,y,w,h" : NULL;
+        if (reason == NULL && skip_separators(line)[0] == '\0') {
+            blank = blank == 0 ? number : blank;
+            continue;
+        }
+        if (reason == NULL && blank != 0) {
+            report_error("%s:%d: an empty line before the end", path, (int)blank);
+            return false;
+        }
+        if (reason == NULL) {
+            reason = parse_line(line, &box);
+        }
+        if (reason != NULL) {
+            report_error("%s:%d: %s", path, (int)number, reason);
+            return false;
+        }
+        if (!append(t, &capacity, &box)) {
+            report_error("%s: out of memory", path);
+            return false;
+        }
+    }
+    if (ferror(stream)) {
+        report_error("%s: cannot read: %s", path, strerror(errno));
+        return false;
+    }
+    if (t->count == 0) {
+        report_error("%s: the file is empty", path);
+        return false;
+    }
+    return true;
+}
+
+bool truth_read(ground_truth *t, const char *path) {
+    memset(t, 0, sizeof *t);
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        report_error("%s: cannot open: %s", path, strerror(errno));
+        return false;
+    }
+    const bool good = read_stream(t, path, stream);
+    (void)fclose(stream);
+    if (!good) {
+        truth_free(t);
+    }
+    return good;
+}
+
+void truth_free(ground_truth *t) {
+    free(t->boxes);
+    memset(t, 0, sizeof *t);
+}
+
+const ast_box *truth_box(const ground_truth *t, int32_t frame) {
+    return frame >= 0 && frame < t->count && !isnan(t->boxes[frame].w) ? &t->boxes[frame] : NULL;
+}
+
+bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box) {
+    int32_t before = frame, after = frame;
+    while (before >= 0 && truth_box(t, before) == NULL) {
+        --before;
+    }
+    while (after < t->count && truth_box(t, after) == NULL) {
+        ++after;
+    }
+    const ast_box *a = truth_box(t, before), *b = truth_box(t, after);
+    if (a == NULL || b == NULL) return false;
+    const float part = after == before ? 0.0f : (float)(frame - before) / (float)(after - before);
+    box->x = a->x + part * (b->x - a->x);
+    box->y = a->y + part * (b->y - a->y);
+    box->w = a->w + part * (b->w - a->w);
+    box->h = a->h + part * (b->h - a->h);
+    return true;
+}
+
+void truth_write_line(FILE *stream, const ast_box *box) {
+    if (box == NULL) {
+        fputs("nan,nan,nan,nan\n", stream);
+    } else {
+        fprintf(stream, "%.2f,%.2f,%.2f,%.2f\n", (double)box->x, (double)box->y, (double)box->w, (double)box->h);
+    }
+}

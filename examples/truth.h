@@ -1,0 +1,26 @@
+/* Ground truth files: one line "x,y,w,h" a frame, in pixels, 0-based top-left corner; "nan,nan,nan,nan" where there is no box. */
+#ifndef TRUTH_H
+#define TRUTH_H
+
+#include <asttrack.h>
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct ground_truth {
+    ast_box *boxes; /* nan sides where there is none */
+    int32_t count;  /* lines */
+} ground_truth;
+
+/* Reads a file whose numbers are parted by commas, tabs or spaces. False after reporting file, line and reason. */
+bool truth_read(ground_truth *t, const char *path);
+void truth_free(ground_truth *t);
+/* The box of a frame (from 0), or NULL where the file has none for it. */
+const ast_box *truth_box(const ground_truth *t, int32_t frame);
+/* The same, with the gaps between two boxes filled linearly: some annotators give every fifth frame only. False where no box lies
+ * at or after the frame, or none at or before it. */
+bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box);
+/* Writes the line of one frame; NULL: no box. */
+void truth_write_line(FILE *stream, const ast_box *box);
+
+#endif
