@@ -1,0 +1,320 @@
+# asttrack: build, check, install. `make help` lists the targets and the variables.
+
+# ---- Variables: set them on the command line or in the environment ----
+
+# where everything that is built goes
+BUILDDIR ?= build
+# C compiler
+CC ?= cc
+# optimisation and debugging flags; what the sources need is added to them
+CFLAGS ?= -O3
+# linear algebra: lapacke or builtin (default: lapacke where it links)
+BACKEND ?= $(if $(filter yes,$(LAPACKE)),lapacke,builtin)
+# yes or no: is OpenBLAS with LAPACKE there (default: tried)
+LAPACKE ?= $(eval LAPACKE := $(call links,$(lapacke_trial),$(lapacke_libs)))$(LAPACKE)
+# yes or no: is libjpeg there, for the command only (default: tried)
+JPEG ?= $(eval JPEG := $(call links,$(jpeg_trial),-ljpeg))$(JPEG)
+# 1: a warning is an error
+WERROR ?= 0
+# 1: show every command
+V ?= 0
+# sanitizers for the build, as in -fsanitize=
+SANITIZE ?=
+# directory of frames that `make demo` tracks (default: a rendered scene)
+FRAMES ?=
+# a checkout of Unity, the C test framework (default: fetched)
+UNITY_DIR ?= .unity
+# Python that makes the virtual environment of the Python tests
+PYTHON ?= python3
+# most stack that a call into the library may take, bytes
+STACK_CEILING ?= 8192
+# where `make install` puts things
+PREFIX ?= /usr/local
+# the same for the libraries
+LIBDIR ?= $(PREFIX)/lib
+# prepended to every installed path, for packagers
+DESTDIR ?=
+
+NM ?= nm
+OBJDUMP ?= objdump
+SIZE ?= size
+CLANG_FORMAT ?= clang-format
+CLANG_TIDY ?= clang-tidy
+INSTALL ?= install
+
+MAKEFLAGS += --no-builtin-rules
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.DEFAULT_GOAL := all
+
+# ---- What the machine has ----
+
+# $(call links,program,libraries): yes when the program compiles and links
+links = $(shell t=$$(mktemp) && printf '%b' '$(1)' | $(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS) -x c - -o $$t $(2) >/dev/null 2>&1 \
+	&& echo yes || echo no; rm -f $$t)
+hash := \#
+lapacke_trial = $(hash)include <cblas.h>\n$(hash)include <lapacke.h>\nint main(void) { float a = 1, w = 0; return \
+	(int)cblas_snrm2(1, &a, 1) + (int)LAPACKE_ssyev_work(LAPACK_COL_MAJOR, 78, 85, 1, &a, 1, &w, &a, 1); }\n
+lapacke_libs := -llapacke -lopenblas
+jpeg_trial = $(hash)include <stdio.h>\n$(hash)include <jpeglib.h>\nint main(void) { struct jpeg_error_mgr e; return \
+	jpeg_std_error(&e) == 0; }\n
+
+ifeq ($(filter $(BACKEND),builtin lapacke),)
+$(error BACKEND=$(BACKEND): say builtin or lapacke)
+endif
+ifeq ($(BACKEND) $(LAPACKE),lapacke no)
+$(error BACKEND=lapacke needs cblas.h, lapacke.h and $(lapacke_libs): on Debian, apt-get install libopenblas-dev liblapacke-dev)
+endif
+
+# ---- Sources and flags ----
+
+# The version is written in the public header only.
+version_numbers := $(shell sed -n 's/^.define AST_VERSION_[A-Z]* \([0-9][0-9]*\)$$/\1/p' include/asttrack.h)
+major := $(word 1,$(version_numbers))
+version := $(subst $() $(),.,$(version_numbers))
+
+backend_sources := $(wildcard src/linalg_builtin.c src/linalg_lapacke.c)
+core_sources := $(filter-out $(backend_sources),$(wildcard src/*.c))
+lib_sources := $(core_sources) src/linalg_$(BACKEND).c
+# The other backend, linked into the test programs only, so that both can be compared in one process.
+other_backends := $(filter-out src/linalg_$(BACKEND).c $(if $(filter no,$(LAPACKE)),src/linalg_lapacke.c),$(backend_sources))
+command_sources := $(filter-out examples/minimal.c,$(wildcard examples/*.c))
+test_sources := $(wildcard tests/test_*.c)
+test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch])
+
+warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
+sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+# No contraction: a fused multiply-add would make two builds of one source differ in their last bits.
+common_flags = $(CFLAGS) -std=c99 -ffp-contract=off $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
+lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
+command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
+test_flags = $(command_flags) -Isrc -Iexamples -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
+	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE)
+
+link = $(CC) $(CFLAGS) $(sanitizers) $(LDFLAGS)
+lib_libs := $(if $(filter lapacke,$(BACKEND)),$(lapacke_libs)) -lm
+jpeg_libs := $(if $(filter yes,$(JPEG)),-ljpeg)
+test_libs := $(if $(filter yes,$(LAPACKE)),$(lapacke_libs)) $(jpeg_libs) -lm
+
+static_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/static/%.o)
+shared_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/shared/%.o)
+other_objects := $(other_backends:src/%.c=$(BUILDDIR)/obj/static/%.o)
+command_objects := $(command_sources:examples/%.c=$(BUILDDIR)/obj/examples/%.o)
+test_support_objects := $(test_support_sources:tests/%.c=$(BUILDDIR)/obj/tests/%.o) $(BUILDDIR)/obj/unity.o
+test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%)
+
+static_lib := $(BUILDDIR)/libasttrack.a
+shared_lib := $(BUILDDIR)/libasttrack.so.$(version)
+# What a recipe says instead of its command, unless V=1.
+quiet := $(if $(filter 1,$(V)),,@)
+say = $(if $(quiet),@printf '  %-4s %s\n' $(1) $@)
+# Calls this Makefile again with what is already known about the machine.
+again = $(MAKE) --no-print-directory LAPACKE=$(LAPACKE) JPEG=$(JPEG)
+
+# ---- Building ----
+
+.PHONY: all lib lib-static lib-shared examples
+all: lib examples ## the library, the command and the examples (default)
+	@echo "built in $(BUILDDIR): asttrack $(version), backend $(BACKEND)$(if $(filter no,$(LAPACKE)), (no OpenBLAS with LAPACKE \
+	found)), JPEG $(JPEG)"
+lib: lib-static lib-shared ## libasttrack.a and libasttrack.so
+lib-static: $(static_lib) ## libasttrack.a alone, for cross-compiling
+lib-shared: $(shared_lib) ## libasttrack.so alone
+examples: $(BUILDDIR)/asttrack $(BUILDDIR)/minimal ## the command `asttrack` and the program to copy, `minimal`
+
+# Text files that change when, and only when, what they record changes: objects depend on the flags, links on what is linked.
+$(BUILDDIR)/lib-flags: export recorded = $(CC) $(lib_flags)
+$(BUILDDIR)/flags: export recorded = $(CC) $(test_flags)
+$(BUILDDIR)/sources: export recorded = $(link) $(lib_sources) $(other_backends) $(command_sources) \
+	$(test_support_sources) $(test_libs)
+$(BUILDDIR)/lib-flags $(BUILDDIR)/flags $(BUILDDIR)/sources: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$recorded" | cmp -s - $@ || printf '%s\n' "$$recorded" > $@
+.PHONY: FORCE
+FORCE:
+
+$(BUILDDIR)/obj/static/%.o: src/%.c $(BUILDDIR)/lib-flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(lib_flags) -c -o $@ $<
+$(BUILDDIR)/obj/shared/%.o: src/%.c $(BUILDDIR)/lib-flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(lib_flags) -fPIC -fvisibility=hidden -DAST_BUILD_SHARED -c -o $@ $<
+$(BUILDDIR)/obj/examples/%.o: examples/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(command_flags) -c -o $@ $<
+$(BUILDDIR)/obj/tests/%.o: tests/%.c $(BUILDDIR)/flags | $(UNITY_DIR)/src/unity.c
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) -c -o $@ $<
+$(BUILDDIR)/obj/unity.o: $(UNITY_DIR)/src/unity.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(CFLAGS) $(sanitizers) -DUNITY_INCLUDE_DOUBLE= -c -o $@ $<
+
+$(static_lib): $(static_objects) $(BUILDDIR)/sources
+	@rm -f $@
+	$(call say,LIB)
+	$(quiet)$(AR) rcs $@ $(static_objects)
+# The link fails when a name leaves the library that is not ours.
+$(shared_lib): $(shared_objects) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -shared -Wl,-soname,libasttrack.so.$(major) -Wl,-z,defs -o $@ $(shared_objects) $(lib_libs)
+	@strangers=$$($(NM) -D --defined-only $@ | awk '$$NF !~ /^ast_/ { print $$NF }'); \
+	if [ -n "$$strangers" ]; then echo "$@ exports names that are not ast_*:" $$strangers >&2; exit 1; fi
+	@ln -sf $(@F) $(BUILDDIR)/libasttrack.so.$(major) && ln -sf libasttrack.so.$(major) $(BUILDDIR)/libasttrack.so
+
+$(BUILDDIR)/asttrack: $(command_objects) $(static_lib) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
+$(BUILDDIR)/minimal: $(BUILDDIR)/obj/examples/minimal.o $(static_lib)
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $^ $(lib_libs)
+
+# ---- The demonstration ----
+
+demo_frames = $(or $(FRAMES),$(BUILDDIR)/demo/scene)
+demo_sheet = $(BUILDDIR)/demo/sheet.$(if $(filter yes,$(JPEG)),jpg,ppm)
+.PHONY: demo
+demo: $(BUILDDIR)/asttrack ## render a scene (or take FRAMES=directory), track it, draw a picture of it
+	@mkdir -p $(BUILDDIR)/demo
+	$(if $(FRAMES),,$(BUILDDIR)/asttrack synth $(demo_frames))
+	$(BUILDDIR)/asttrack track $(demo_frames) --csv $(BUILDDIR)/demo/track.csv --sheet $(demo_sheet)
+	@echo "boxes:   $(BUILDDIR)/demo/track.csv"
+	@echo "picture: $(demo_sheet)"
+
+# ---- Tests ----
+
+.PHONY: test test-c test-programs test-python unity sanitize asan ubsan tsan
+test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary \
+	$(if $(wildcard bindings/python/pyproject.toml),$(BUILDDIR)/python/summary)
+comma := ,
+lapacke_skipped := C tests with lapacke: 0 passed, 0 failed, 1 skipped (no libopenblas-dev and liblapacke-dev)
+
+# One C run for each backend that the machine can build, each in a build directory of its own; a failing run does not stop the next.
+test: unity ## all tests: C with each backend, then Python
+	@rm -f $(test_summaries) && mkdir -p $(dir $(test_summaries))
+	+@$(again) BUILDDIR=$(BUILDDIR)/builtin BACKEND=builtin test-c; builtin=$$?; \
+	$(if $(filter yes,$(LAPACKE)),$(again) BUILDDIR=$(BUILDDIR)/lapacke BACKEND=lapacke test-c,echo "$(lapacke_skipped)" > \
+	    $(BUILDDIR)/lapacke/tests/summary); lapacke=$$?; \
+	$(if $(wildcard bindings/python/pyproject.toml),$(again) test-python,true); python=$$?; \
+	scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); exit $$((builtin || lapacke || python))
+
+test-c: $(test_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
+	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(test_programs)
+test-programs: $(test_programs)
+
+# A test links the objects of the examples that it calls, the program's own main() never: an archive gives only what is asked for.
+$(BUILDDIR)/libexamples.a: $(command_objects) $(BUILDDIR)/sources
+	@rm -f $@
+	$(call say,LIB)
+	$(quiet)$(AR) rcs $@ $(command_objects)
+$(test_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
+		$(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+
+unity: $(UNITY_DIR)/src/unity.c ## fetch the C test framework
+$(UNITY_DIR)/src/unity.c:
+	$(if $(filter .unity,$(UNITY_DIR)),scripts/fetch_unity.sh $(UNITY_DIR),@echo "$@ is missing: UNITY_DIR is not a checkout of \
+	Unity" >&2; exit 1)
+
+test-python: .venv/installed ## the Python tests, in a virtual environment of their own
+	@mkdir -p $(BUILDDIR)/python
+	@.venv/bin/python -m pytest -q -rs -p no:cacheprovider --junitxml=$(BUILDDIR)/python/junit.xml bindings/python/tests; status=$$?; \
+	sed -n 's/.*<testsuite [^>]*errors="\([0-9]*\)" failures="\([0-9]*\)" skipped="\([0-9]*\)" tests="\([0-9]*\)".*/\1 \2 \3 \4/p' \
+	    $(BUILDDIR)/python/junit.xml | awk '{ printf "Python tests: %d passed, %d failed, %d skipped\n", \
+	    $$4 - $$1 - $$2 - $$3, $$1 + $$2, $$3 }' > $(BUILDDIR)/python/summary; exit $$status
+# The package is built and installed anew when it or the library changes: the library is inside it.
+.venv/installed: $(wildcard include/*.h src/*.[ch]) $(shell find bindings/python/pyproject.toml bindings/python/CMakeLists.txt \
+		bindings/python/src -type f -not -name '*.pyc' 2>/dev/null)
+	@$(PYTHON) -c 'import venv, ensurepip' || { echo "$(PYTHON) cannot make virtual environments: on Debian, apt-get install \
+	python3-venv; or name another with PYTHON=" >&2; exit 1; }
+	[ -x .venv/bin/pip ] || $(PYTHON) -m venv .venv
+	.venv/bin/pip install --quiet --disable-pip-version-check './bindings/python[eval,peers,fleet,test]'
+	@touch $@
+
+sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them
+	$(if $(SANITIZE),,$(error say SANITIZE=address$(comma)undefined or another list))
+	+@$(again) BUILDDIR=$(BUILDDIR)/$(subst $(comma),-,$(SANITIZE)) CFLAGS=-O1 test-c
+asan: ## the C tests under the address sanitizer
+	+@$(again) SANITIZE=address sanitize
+ubsan: ## the C tests under the undefined-behaviour sanitizer
+	+@$(again) SANITIZE=undefined sanitize
+# OpenBLAS is not compiled for it and would be reported.
+tsan: ## the C tests under the thread sanitizer, with the builtin backend
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin SANITIZE=thread sanitize
+
+# ---- Checks ----
+
+.PHONY: size symbols stack stack-objects lint format format-check
+size: $(static_lib) ## bytes of code and data; fails when the library has writable data
+	@$(SIZE) -t $(static_lib)
+	@$(OBJDUMP) -t $(static_lib) | awk -F '\t' '/file format/ { sub(/:.*/, ""); object = $$0 } \
+	    NF == 2 { n = split($$1, left, " "); split($$2, right, " "); section = left[n]; name = right[2]; \
+	    if (section ~ /^([.](data|bss|tdata|tbss)([.]|$$)|[*]COM[*])/ && section !~ /^[.]data[.]rel[.]ro/ && name != section) \
+	        { print object ": " name " is writable data (" section ")"; found = 1 } } \
+	    END { if (found) exit 1; print "no writable data in the library" }'
+
+symbols: $(shared_lib) ## fails unless the shared library exports the functions of the header and nothing else
+	@sed -n 's/^AST_API .*[ *]\(ast_[a-z0-9_]*\)(.*/\1/p' include/asttrack.h | LC_ALL=C sort > $(BUILDDIR)/declared
+	@$(NM) -D --defined-only $(shared_lib) | awk '{ print $$NF }' | LC_ALL=C sort > $(BUILDDIR)/exported
+	@diff $(BUILDDIR)/declared $(BUILDDIR)/exported && echo "$$(wc -l < $(BUILDDIR)/exported) functions, as in the header"
+
+# gcc, because it alone writes call graphs; no jump tables, because in them a branch looks like a function's address.
+stack: ## stack of the deepest chain of calls below each function of the API; fails above STACK_CEILING
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/stack CC=gcc LAPACKE=$(LAPACKE) JPEG=no \
+	    CFLAGS='-O3 -ffunction-sections -fno-jump-tables -fcallgraph-info=su' stack-objects
+stack-objects: $(static_objects) $(other_objects)
+	@$(PYTHON) scripts/check_stack.py --ceiling $(STACK_CEILING) --objdump $(OBJDUMP) $^
+
+lint: ## static analysis of the C sources
+	@$(CLANG_TIDY) --version >/dev/null || { echo "no $(CLANG_TIDY): on Debian, apt-get install clang-tidy" >&2; exit 1; }
+	@printf '%s\n' $(filter-out $(if $(filter no,$(LAPACKE)),src/linalg_lapacke.c),$(wildcard src/*.c examples/*.c)) | \
+	    xargs -P $$(nproc) -n 1 sh -c '$(CLANG_TIDY) --quiet "$$0" -- -std=c99 -Iinclude -DAST_LINALG=ast_linalg_$(BACKEND) \
+	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
+
+format: ## lay out the C sources
+	$(CLANG_FORMAT) -i $(c_files)
+format-check: ## fail when `make format` would change a file
+	$(CLANG_FORMAT) --dry-run -Werror $(c_files)
+
+# ---- Installing ----
+
+.PHONY: install uninstall
+install: lib examples ## into PREFIX: header, libraries, pkg-config file, command
+	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(version)|' -e 's|@LIBS_PRIVATE@|$(lib_libs)|' \
+	    asttrack.pc.in > $(BUILDDIR)/asttrack.pc
+	$(INSTALL) -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig
+	$(INSTALL) -m 755 $(BUILDDIR)/asttrack $(DESTDIR)$(PREFIX)/bin
+	$(INSTALL) -m 644 include/asttrack.h $(DESTDIR)$(PREFIX)/include
+	$(INSTALL) -m 644 $(static_lib) $(DESTDIR)$(LIBDIR)
+	$(INSTALL) -m 755 $(shared_lib) $(DESTDIR)$(LIBDIR)
+	ln -sf $(notdir $(shared_lib)) $(DESTDIR)$(LIBDIR)/libasttrack.so.$(major)
+	ln -sf libasttrack.so.$(major) $(DESTDIR)$(LIBDIR)/libasttrack.so
+	$(INSTALL) -m 644 $(BUILDDIR)/asttrack.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+uninstall: ## remove what `make install` put there
+	rm -f $(DESTDIR)$(PREFIX)/bin/asttrack $(DESTDIR)$(PREFIX)/include/asttrack.h $(DESTDIR)$(LIBDIR)/libasttrack.a \
+	    $(DESTDIR)$(LIBDIR)/libasttrack.so $(DESTDIR)$(LIBDIR)/libasttrack.so.$(major) \
+	    $(DESTDIR)$(LIBDIR)/$(notdir $(shared_lib)) $(DESTDIR)$(LIBDIR)/pkgconfig/asttrack.pc
+
+# ---- Housekeeping ----
+
+.PHONY: clean distclean help
+clean: ## remove BUILDDIR
+	$(if $(filter $(abspath $(BUILDDIR))%,$(CURDIR)),$(error BUILDDIR=$(BUILDDIR) holds these sources: not removed))
+	rm -rf $(BUILDDIR)
+distclean: clean ## remove also what was fetched: Unity, the virtual environment
+	rm -rf .unity .venv
+help: ## this text
+	@echo "targets:"
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
+	@echo "variables (make NAME=value):"
+	@awk '/^# / { said = substr($$0, 3) } /^[A-Z_]+ \?=/ { if (said) printf "  %-14s %s\n", $$1, said; said = "" }' \
+	    $(firstword $(MAKEFILE_LIST))
+
+-include $(wildcard $(BUILDDIR)/obj/*/*.d)
