@@ -4,11 +4,15 @@
 
 #include "real.h"
 
+void ast_cloud_set(struct ast_cloud *cloud, int i, struct ast_state state) {
+    cloud->x[i] = state.x;
+    cloud->y[i] = state.y;
+    cloud->scale[i] = state.scale;
+}
+
 void ast_cloud_gather(struct ast_cloud *cloud, const struct ast_state *state) {
     for (int i = 0; i < cloud->count; i++) {
-        cloud->x[i] = state->x;
-        cloud->y[i] = state->y;
-        cloud->scale[i] = state->scale;
+        ast_cloud_set(cloud, i, *state);
         cloud->weight[i] = 1.0f / (float)cloud->count;
     }
 }
@@ -60,18 +64,42 @@ static void draw(struct draws *draws, int quasi, struct ast_random *random, floa
     }
 }
 
+struct ast_state ast_state_within(struct ast_state state, const ast_config *cfg, const ast_frame *frame) {
+    state.x = clamp(state.x, 0.0f, (float)frame->width);
+    state.y = clamp(state.y, 0.0f, (float)frame->height);
+    state.scale = clamp(state.scale, cfg->scale_min, cfg->scale_max);
+    return state;
+}
+
 void ast_cloud_diffuse(struct ast_cloud *cloud, const ast_config *cfg, const ast_frame *frame, struct ast_random *random) {
-    const float right = (float)frame->width, bottom = (float)frame->height;
     const int quasi = cfg->draws == AST_DRAWS_QUASI;
     struct draws draws = {{0, 0, 0}};
     for (int a = 0; quasi && a < 3; a++) draws.at[a] = ast_random_bits(random);
     for (int i = 0; i < cloud->count; i++) {
         float normal[3];
         draw(&draws, quasi, random, normal);
-        cloud->x[i] = clamp(cloud->x[i] + cfg->walk_x * normal[0], 0.0f, right);
-        cloud->y[i] = clamp(cloud->y[i] + cfg->walk_y * normal[1], 0.0f, bottom);
-        cloud->scale[i] = clamp(cloud->scale[i] * expf(cfg->walk_scale * normal[2]), cfg->scale_min, cfg->scale_max);
+        const struct ast_state moved = {cloud->x[i] + cfg->walk_x * normal[0], cloud->y[i] + cfg->walk_y * normal[1],
+                                        cloud->scale[i] * expf(cfg->walk_scale * normal[2])};
+        ast_cloud_set(cloud, i, ast_state_within(moved, cfg, frame));
     }
+}
+
+float ast_cloud_spread(const struct ast_cloud *cloud) {
+    ast_real x = 0, y = 0, total = 0, variance = 0;
+    for (int i = 0; i < cloud->count; i++) {
+        const ast_real w = (ast_real)cloud->weight[i];
+        x += w * (ast_real)cloud->x[i];
+        y += w * (ast_real)cloud->y[i];
+        total += w;
+    }
+    if (!(total > 0)) return 0.0f;
+    x /= total;
+    y /= total;
+    for (int i = 0; i < cloud->count; i++) {
+        const ast_real dx = (ast_real)cloud->x[i] - x, dy = (ast_real)cloud->y[i] - y;
+        variance += (ast_real)cloud->weight[i] * (dx * dx + dy * dy);
+    }
+    return (float)ast_sqrt(variance / total);
 }
 
 float ast_cloud_effective(const struct ast_cloud *cloud) {

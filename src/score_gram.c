@@ -23,7 +23,7 @@
 #include "vector.h"
 
 /* Below this fraction of |d|^2, rho^2 = |d|^2 - |q|^2 has lost too many digits, and the residual is computed from its definition. */
-#define RESIDUAL_TOLERANCE ((ast_real)1e-4)
+#define RESIDUAL_TOLERANCE ((ast_real)1e-1)
 
 /* Columns in front of the bag's: reference, Q_1 .. Q_P, and with a background its mean m_b and its vectors. */
 enum { REFERENCE = 0, Q_FIRST = 1 };
@@ -232,6 +232,26 @@ struct candidate {
     int rank;                 /* directions of U_i present */
 };
 
+/* Subtracts from d what Q explains of it, twice, since Q is orthonormal to single precision only; q receives the coordinates. Returns
+ * the squared length of what is left. */
+static ast_real residual_of(const struct ast_gram *s, const struct ast_bag *bag, const float *d, ast_real *residual, ast_real *q) {
+    enum { PASSES = 2 };
+    ast_real rest = 0;
+    for (int i = 0; i < s->dim; i++) residual[i] = (ast_real)d[i];
+    for (int l = 0; l < s->rank; l++) q[l] = 0;
+    for (int pass = 0; pass < PASSES; pass++) {
+        for (int l = 0; l < s->rank; l++) {
+            const float *column = lead_column(bag, Q_FIRST + l);
+            ast_real along = 0;
+            for (int i = 0; i < s->dim; i++) along += residual[i] * (ast_real)column[i];
+            for (int i = 0; i < s->dim; i++) residual[i] -= along * (ast_real)column[i];
+            q[l] += along;
+        }
+    }
+    for (int i = 0; i < s->dim; i++) rest += residual[i] * residual[i];
+    return rest;
+}
+
 /* Splits d into its part in Q and the rest. */
 static void project(const struct ast_gram *s, const struct ast_scene *scene, const float *d, struct candidate *c) {
     const struct ast_bag *bag = scene->bag;
@@ -247,13 +267,7 @@ static void project(const struct ast_gram *s, const struct ast_scene *scene, con
         /* Inner products corrected for the metric carry single precision's rounding: below it there is no direction to speak of. */
         if (rest < (ast_real)1e-6 * c->square) rest = 0;
     } else if (rest < RESIDUAL_TOLERANCE * c->square) {
-        for (int l = 0; l < s->rank; l++) c->q[l] = ast_dot(d, lead_column(bag, 1 + l), s->dim);
-        rest = 0;
-        for (int i = 0; i < s->dim; i++) {
-            residual[i] = (ast_real)d[i];
-            for (int l = 0; l < s->rank; l++) residual[i] -= c->q[l] * (ast_real)lead_column(bag, 1 + l)[i];
-            rest += residual[i] * residual[i];
-        }
+        rest = residual_of(s, bag, d, residual, c->q);
         c->residual = residual;
     }
     /* What is left of a patch that lies in Q is Q's own rounding: no direction. */

@@ -9,7 +9,7 @@
 
 #define FORMAT_VERSION 1u
 #define POSITION_LIMIT 1e6f /* pixels: beyond any centre that a legal start or step can give */
-#define VALUE_LIMIT 1e18f   /* beyond any element of a patch or a basis; squares stay finite */
+#define VALUE_LIMIT 1e6f    /* beyond any element of a vector or a basis, which weights keep below 100; distances stay finite */
 
 enum codec_mode { CODEC_COUNT, CODEC_WRITE, CODEC_CHECK, CODEC_READ };
 
@@ -90,6 +90,13 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_int(c, &t->confidence.status, AST_TRACKING, AST_LOST);
     code_int(c, &t->confidence.low, 0, t->cfg.lost_after);
 
+    code_float(c, &t->guard.usual, -1.0f, 1.0f);
+    code_int(c, &t->guard.low, 0, AST_GUARD_LONG);
+    code_int(c, &t->guard.lost, 0, 1);
+    code_float(c, &t->guard.good.x, -limit, limit);
+    code_float(c, &t->guard.good.y, -limit, limit);
+    code_float(c, &t->guard.good.scale, t->cfg.scale_min, t->cfg.scale_max);
+
     code_floats(c, t->cloud.x, particles, -limit, limit, 1);
     code_floats(c, t->cloud.y, particles, -limit, limit, 1);
     code_floats(c, t->cloud.scale, particles, t->cfg.scale_min, t->cfg.scale_max, 1);
@@ -153,7 +160,7 @@ size_t ast_save_size(const ast_config *cfg) {
     if (ast_config_check(cfg, NULL) != AST_OK) return 0;
     const size_t dim = (size_t)ast_features_length(cfg), k = (size_t)cfg->bag_size;
     const size_t background = cfg->background > 0 ? (size_t)cfg->background + 1 : 0;
-    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
+    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 6 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
     const size_t vectors = (size_t)cfg->history + k * ((size_t)cfg->basis_size + 1) + 1 + background;
     struct codec c = {.mode = CODEC_COUNT, .at = HEADER};
     visit_config(&c, cfg);

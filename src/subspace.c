@@ -54,8 +54,7 @@ int ast_subspace_of(const struct ast_linalg *la, const struct ast_images *images
     *rank = ast_rank(values, count, n, ast_images_norm(images));
     for (int l = 0; l < n; l++) {
         float *out = basis + (size_t)l * (size_t)stride;
-        const ast_real *vector = work + (size_t)l * (size_t)images->dim;
-        for (int d = 0; d < images->dim; d++) out[d] = l < *rank ? (float)vector[d] : 0.0f;
+        for (int d = 0; d < images->dim; d++) out[d] = l < *rank ? (float)work[(size_t)l * (size_t)images->dim + (size_t)d] : 0.0f;
     }
     return 0;
 }

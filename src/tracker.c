@@ -244,6 +244,7 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
     t->velocity_x = t->velocity_y = 0.0f;
     t->confidence.status = AST_TRACKING;
     t->confidence.low = 0;
+    ast_guard_clear(&t->guard, &last);
     ast_random_seed(&t->random, t->cfg.seed);
     ast_cloud_gather(&t->cloud, &t->estimate);
     ast_history_clear(&t->history);
@@ -312,6 +313,21 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
     look(t, frame, left, top, right, bottom, t->estimate.scale);
 }
 
+/* The frame's candidates: the last cloud's, moved on; while the object is lost, a growing cloud around where it was last seen. */
+static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_random *random) {
+    const float size = sqrtf(t->box_width * t->box_height) * t->estimate.scale;
+    const ast_config walk = ast_guard_walk(&t->guard, &t->cfg, size);
+    if (t->guard.lost) {
+        ast_cloud_gather(&t->proposal, &t->guard.good);
+    } else {
+        ast_cloud_resample(&t->cloud, &t->proposal, random);
+        ast_cloud_shift(&t->proposal, t->cfg.velocity * t->velocity_x, t->cfg.velocity * t->velocity_y);
+    }
+    ast_cloud_diffuse(&t->proposal, &walk, frame, random);
+    if (t->cfg.incumbent) ast_cloud_set(&t->proposal, 0, ast_state_within(t->estimate, &t->cfg, frame));
+    look_at_cloud(t, frame);
+}
+
 static void copy_cloud(struct ast_cloud *to, const struct ast_cloud *from) {
     const size_t bytes = (size_t)from->count * sizeof(float);
     memcpy(to->x, from->x, bytes);
@@ -328,54 +344,56 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
 
     /* Everything below until the commit works on scratch. */
     struct ast_random random = t->random;
-    ast_cloud_resample(&t->cloud, &t->proposal, &random);
-    ast_cloud_shift(&t->proposal, t->cfg.velocity * t->velocity_x, t->cfg.velocity * t->velocity_y);
-    ast_cloud_diffuse(&t->proposal, &t->cfg, frame, &random);
-    if (t->cfg.incumbent) {
-        t->proposal.x[0] = t->estimate.x;
-        t->proposal.y[0] = t->estimate.y;
-        t->proposal.scale[0] = t->estimate.scale;
-    }
-    look_at_cloud(t, frame);
+    propose(t, frame, &random);
 
     const int models = t->bag.count > 0 ? t->bag.count : 1;
     t->models = 0; /* until the distances are whole again */
     error = score_particles(t, models);
     if (error != AST_OK) return error;
     const int best = ast_decide(t->distance, t->proposal.count, models, &t->cfg, t->proposal.weight);
-    const struct ast_state estimate = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
-    const ast_box box = window_of(t, &estimate);
+    const struct ast_state found = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
+    const ast_box found_box = window_of(t, &found);
     float nearest = t->distance[(size_t)best * (size_t)models];
     for (int j = 1; j < models; j++) {
         const float distance = t->distance[(size_t)best * (size_t)models + (size_t)j];
         if (distance < nearest) nearest = distance;
     }
 
-    /* The winner's vector again (the tile has been reused), its score, and its subspace when a model is due. */
-    float *patch = t->tile;
-    describe(t, &box, patch);
-    const float score = ast_confidence_score(patch, t->anchor, &t->bag);
+    /* The winner's vector again (the tile has been reused), what it is worth, and its subspace when a model is due. */
+    float *vector = t->tile;
+    describe(t, &found_box, vector);
+    const float score = ast_confidence_score(vector, t->anchor, &t->bag);
+    const float likeness = ast_guard_likeness(vector, t->anchor, t->background.size > 0 ? t->background.mean : NULL, t->dim);
+    const float spread = ast_cloud_spread(&t->proposal) / sqrtf(found_box.w * found_box.h);
+    const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, likeness, spread);
+    const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
-    const int model_due = first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval);
+    const int model_due = trusted && (first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval));
     int rank = 0;
-    if (model_due) error = fit_winner(t, patch, &rank);
+    if (model_due) error = fit_winner(t, vector, &rank);
     if (error != AST_OK) return error;
 
+    const int was_lost = t->guard.lost;
+    const struct ast_state estimate = guard.lost ? guard.good : found;
     t->random = random;
     t->frame++;
-    t->since_model = model_due ? 0 : t->since_model + 1;
-    t->velocity_x = 0.5f * (t->velocity_x + estimate.x - t->estimate.x);
-    t->velocity_y = 0.5f * (t->velocity_y + estimate.y - t->estimate.y);
+    t->velocity_x = trusted && !was_lost ? 0.5f * (t->velocity_x + estimate.x - t->estimate.x) : 0.0f;
+    t->velocity_y = trusted && !was_lost ? 0.5f * (t->velocity_y + estimate.y - t->estimate.y) : 0.0f;
     t->estimate = estimate;
     t->confidence = ast_confidence_next(t->confidence, &t->cfg, score);
+    if (t->cfg.guard > 0.0f) t->confidence.status = ast_guard_status(&guard, &t->cfg, score);
+    t->guard = guard;
     t->models = models;
     copy_cloud(&t->cloud, &t->proposal);
-    ast_history_push(&t->history, patch);
-    if (model_due) add_model(t, rank);
-    refresh_background(t, &box);
+    if (trusted) {
+        t->since_model = model_due ? 0 : t->since_model + 1;
+        ast_history_push(&t->history, vector);
+        if (model_due) add_model(t, rank);
+        refresh_background(t, &found_box);
+    }
 
     if (result != NULL) {
-        result->box = box;
+        result->box = window_of(t, &estimate);
         result->scale = estimate.scale;
         result->score = score;
         result->distance = nearest;

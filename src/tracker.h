@@ -7,6 +7,7 @@
 #include "bag.h"
 #include "confidence.h"
 #include "feature.h"
+#include "guard.h"
 #include "history.h"
 #include "particles.h"
 #include "random.h"
@@ -30,6 +31,7 @@ struct ast_tracker {
     float velocity_x, velocity_y; /* smoothed, pixels a frame */
     struct ast_random random;
     struct ast_confidence confidence;
+    struct ast_guard guard;
     struct ast_cloud cloud;
     struct ast_history history;
     struct ast_bag bag;
