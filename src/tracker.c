@@ -385,8 +385,8 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     t->guard = guard;
     t->models = models;
     copy_cloud(&t->cloud, &t->proposal);
+    t->since_model = model_due ? 0 : t->since_model + 1;
     if (trusted) {
-        t->since_model = model_due ? 0 : t->since_model + 1;
         ast_history_push(&t->history, vector);
         if (model_due) add_model(t, rank);
         refresh_background(t, &found_box);
