@@ -2,6 +2,10 @@
 
 #include "vector.h"
 
+/* The least ridge, relative to the vectors' squares: above what rounding of single-precision inner products makes of a background
+ * that does not vary, far below one that does. */
+#define ROUNDING_FLOOR ((ast_real)1e-6)
+
 void ast_metric_layout(struct ast_metric *m, int size, float ridge, int columns, int tile, struct ast_arena *arena) {
     const size_t b = (size_t)size;
     m->size = size;
@@ -48,7 +52,7 @@ static void factorise(float *a, int n) {
 void ast_metric_prepare(struct ast_metric *m, const float *gram, int columns, int mean) {
     const int b = m->size;
     const float *mean_row = gram;
-    ast_real trace = 0;
+    ast_real trace = 0, total = 0;
     /* Zc Zc' from the rows of z and m_b. */
     for (int r = 0; r < b; r++) {
         const float *row = gram + (size_t)(1 + r) * (size_t)columns;
@@ -57,8 +61,10 @@ void ast_metric_prepare(struct ast_metric *m, const float *gram, int columns, in
             m->factor[(size_t)r * (size_t)b + (size_t)c] = (row[mean + 1 + c] - row[mean]) - (other[mean] - mean_row[mean]);
         }
         trace += (ast_real)m->factor[(size_t)r * (size_t)b + (size_t)r];
+        total += (ast_real)row[mean + 1 + r];
     }
-    for (int r = 0; r < b; r++) m->factor[(size_t)r * (size_t)b + (size_t)r] += m->ridge * (float)trace;
+    const ast_real ridge = (ast_real)m->ridge * trace, floor = ROUNDING_FLOOR * total, diagonal = ridge > floor ? ridge : floor;
+    for (int r = 0; r < b; r++) m->factor[(size_t)r * (size_t)b + (size_t)r] += (float)diagonal;
     factorise(m->factor, b);
     for (int x = 0; x < columns; x++) {
         float *t = m->known + (size_t)x * (size_t)b;

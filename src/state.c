@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define FORMAT_VERSION 1u
+#define SHARE_LIMIT 1.0001f /* of a weight or a likeness: 1 and its rounding */
 #define POSITION_LIMIT 1e6f /* pixels: beyond any centre that a legal start or step can give */
 #define VALUE_LIMIT 1e6f    /* beyond any element of a vector or a basis, which weights keep below 100; distances stay finite */
 
@@ -90,7 +91,7 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_int(c, &t->confidence.status, AST_TRACKING, AST_LOST);
     code_int(c, &t->confidence.low, 0, t->cfg.lost_after);
 
-    code_float(c, &t->guard.usual, -1.0f, 1.0f);
+    code_float(c, &t->guard.usual, -SHARE_LIMIT, SHARE_LIMIT);
     code_int(c, &t->guard.low, 0, AST_GUARD_LONG);
     code_int(c, &t->guard.lost, 0, 1);
     code_float(c, &t->guard.good.x, -limit, limit);
@@ -100,7 +101,7 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_floats(c, t->cloud.x, particles, -limit, limit, 1);
     code_floats(c, t->cloud.y, particles, -limit, limit, 1);
     code_floats(c, t->cloud.scale, particles, t->cfg.scale_min, t->cfg.scale_max, 1);
-    code_floats(c, t->cloud.weight, particles, 0.0f, 1.0f, 1);
+    code_floats(c, t->cloud.weight, particles, 0.0f, SHARE_LIMIT, 1);
 
     code_int(c, &t->history.count, 1, t->history.capacity);
     code_int(c, &t->history.oldest, 0, t->history.capacity - 1);
