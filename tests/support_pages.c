@@ -1,0 +1,25 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "support_pages.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+void pages_open(struct pages *pages, size_t size) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), inside = (size + page - 1) / page * page;
+    pages->mapping_size = inside + 2 * page;
+    pages->mapping = mmap(NULL, pages->mapping_size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages->mapping == MAP_FAILED || mprotect((unsigned char *)pages->mapping + page, inside, PROT_READ | PROT_WRITE) != 0) {
+        perror("guarded pages");
+        exit(1);
+    }
+    pages->first = (unsigned char *)pages->mapping + page;
+    pages->end = pages->first + inside;
+    memset(pages->first, 0xdb, inside);
+}
+
+void pages_close(struct pages *pages) {
+    (void)munmap(pages->mapping, pages->mapping_size);
+}

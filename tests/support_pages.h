@@ -1,0 +1,19 @@
+/* Memory between two pages that cannot be touched: a read or a write beyond it ends the program. */
+#ifndef SUPPORT_PAGES_H
+#define SUPPORT_PAGES_H
+
+#include <stddef.h>
+
+struct pages {
+    unsigned char *first; /* first byte after the lower forbidden page */
+    unsigned char *end;   /* first byte of the upper forbidden page */
+    void *mapping;
+    size_t mapping_size;
+};
+
+/* Room for at least size bytes, filled with 0xdb: a block that starts at `first` or one that ends at `end` touches a forbidden page.
+ * Ends the program when there is no memory. */
+void pages_open(struct pages *pages, size_t size);
+void pages_close(struct pages *pages);
+
+#endif
