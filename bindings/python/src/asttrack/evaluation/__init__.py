@@ -1,0 +1,1 @@
+"""Measuring trackers against ground truth: sequences, protocol, metrics, tables and the report."""

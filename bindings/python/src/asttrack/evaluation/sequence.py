@@ -1,0 +1,170 @@
+"""Sequences on disk: a directory with numbered frames in `img/` and the object's box in each."""
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from asttrack.failures import DataError, unusable
+from asttrack.frames import Frame
+
+TRUTH_NAMES = ("groundtruth.txt", "groundtruth_rect.txt")
+PICTURES = (".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".ppm", ".tif", ".tiff", ".webp")
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """A sequence to evaluate on.
+
+    Attributes:
+        name: of its directory; unique among the sequences found together.
+        directory: where it lies.
+        frames: paths of the frames that have a line of ground truth.
+        truth: (frames, 4) boxes x, y, w, h in pixels; a row of nan where there is none. The first row is a box.
+        notes: what a reader of the figures should know, one line each.
+    """
+
+    name: str
+    directory: Path
+    frames: tuple[Path, ...]
+    truth: NDArray[np.float64]
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.frames)
+
+    def pictures(self) -> Iterator[Frame]:
+        """The frames, grey, oldest first. Raises DataError at one that cannot be read."""
+        return map(read_grey, self.frames)
+
+
+def find_sequences(paths: Iterable[Path]) -> tuple[list[Sequence], list[str]]:
+    """The sequences at `paths`, each a sequence or a directory of sequences, and one line for each that cannot be used."""
+    found: list[Sequence] = []
+    problems: list[str] = []
+    for path in paths:
+        for directory in sequence_directories(path):
+            try:
+                found.append(read_sequence(directory))
+            except DataError as error:
+                problems.append(str(error))
+    names = distinct_names([sequence.directory for sequence in found])
+    return [replace(sequence, name=name) for sequence, name in zip(found, names, strict=True)], problems
+
+
+def distinct_names(directories: list[Path]) -> list[str]:
+    """What to call the sequences in these directories: by the directory, by its whole path where others are called so, too."""
+    names = [directory.resolve().name for directory in directories]
+    return [str(directory) if names.count(name) > 1 else name for name, directory in zip(names, directories, strict=True)]
+
+
+def read_sequence(directory: Path) -> Sequence:
+    """Reads one sequence; its pictures stay on disk. Raises DataError."""
+    truth_path = _truth_path(directory)
+    if not directory.is_dir():
+        raise DataError(f"{directory}: {'is not a directory' if directory.exists() else 'no such directory'}")
+    if truth_path is None:
+        raise DataError(f"{directory}: no {' or '.join(TRUTH_NAMES)}")
+    truth = read_truth(truth_path)
+    if np.isnan(truth[0, 0]):
+        raise DataError(f"{truth_path}:1: no box to start from")
+    frames = numbered_pictures(directory)
+    if not frames:
+        raise DataError(f"{directory}: no numbered pictures in it or in its img/")
+    count = min(len(frames), len(truth))
+    notes = []
+    if len(frames) != len(truth):
+        notes.append(f"{directory}: {len(frames)} frames but {len(truth)} lines of ground truth: evaluated on the first {count}")
+    if count < 2:
+        raise DataError(f"{directory}: fewer than two frames with ground truth")
+    return Sequence(directory.resolve().name, directory, tuple(frames[:count]), truth[:count], tuple(notes))
+
+
+def numbered_pictures(directory: Path) -> list[Path]:
+    """Pictures in the order of the numbers that end their names: those of `img/` where it has any, else the directory's own.
+
+    Raises DataError where the directory cannot be read.
+    """
+    for place in (directory / "img", directory):
+        if not place.is_dir() and place != directory:
+            continue
+        try:
+            numbered = [(int(match[1]), path.name, path) for path in place.iterdir() if (match := _number(path))]
+        except OSError as error:
+            raise unusable(place, error) from error
+        if numbered:
+            return [path for _, _, path in sorted(numbered)]
+    return []
+
+
+def read_truth(path: Path) -> NDArray[np.float64]:
+    """Reads boxes, one line a frame, numbers parted by commas, tabs or spaces; `nan` or zero four times stand for no box.
+
+    Raises DataError.
+    """
+    try:
+        lines = path.read_text(encoding="ascii").splitlines()
+    except OSError as error:
+        raise unusable(path, error) from error
+    except UnicodeDecodeError as error:
+        raise DataError(f"{path}: not a text of numbers") from error
+    while lines and not lines[-1].strip():
+        lines.pop()
+    if not lines:
+        raise DataError(f"{path}: the file is empty")
+    return np.array([_parse_box(line, f"{path}:{number}") for number, line in enumerate(lines, 1)])
+
+
+def read_grey(path: Path) -> Frame:
+    """Reads a picture as grey. Raises DataError."""
+    picture = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    if picture is None:
+        try:
+            path.open("rb").close()
+        except OSError as error:
+            raise unusable(path, error) from error
+        raise DataError(f"{path}: not a picture that OpenCV reads, or damaged")
+    return np.asarray(picture, np.uint8)
+
+
+def sequence_directories(path: Path) -> list[Path]:
+    """`path` itself, or the sequences in it when it is a directory of them."""
+    if _truth_path(path) is not None or not path.is_dir():
+        return [path]
+    try:
+        inside = sorted(child for child in path.iterdir() if child.is_dir() and _truth_path(child) is not None)
+    except OSError:
+        inside = []
+    return inside or [path]
+
+
+def _truth_path(directory: Path) -> Path | None:
+    return next((directory / name for name in TRUTH_NAMES if (directory / name).is_file()), None)
+
+
+def _number(path: Path) -> re.Match[str] | None:
+    """Matches the digits that end the stem of a picture's name."""
+    return re.search(r"(\d+)$", path.stem) if path.suffix.lower() in PICTURES and not path.name.startswith(".") else None
+
+
+def _parse_box(line: str, place: str) -> list[float]:
+    words = re.split(r"[,\s]+", line.strip().strip(","))
+    try:
+        box = [float(word) for word in words]
+    except ValueError:
+        box = []
+    if len(box) != 4 or any(map(math.isinf, box)):
+        raise DataError(f"{place}: not four numbers x,y,w,h")
+    absent = [math.isnan(number) for number in box]
+    if all(absent) or not any(box):
+        return [math.nan] * 4
+    if any(absent):
+        raise DataError(f"{place}: nan in part of a box")
+    if box[2] <= 0 or box[3] <= 0:
+        raise DataError(f"{place}: a box without area (nan,nan,nan,nan stands for no box)")
+    return box

@@ -1,0 +1,121 @@
+"""Sequences on disk: layouts, forms of ground truth, and what is wrong with them."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from asttrack.evaluation.sequence import find_sequences, read_grey, read_sequence, read_truth
+from asttrack.failures import DataError
+
+BOX = "10,12,20,22"
+
+
+def make(directory: Path, lines: list[str], frames: int, truth: str = "groundtruth.txt", folder: str = "img") -> Path:
+    (directory / folder).mkdir(parents=True)
+    for number in range(1, frames + 1):
+        cv2.imwrite(str(directory / folder / f"{number:04d}.png"), np.full((48, 64), number, np.uint8))
+    (directory / truth).write_text("\n".join(lines) + "\n")
+    return directory
+
+
+@pytest.mark.parametrize("line", ["1.5,2,30,4e1", "1.5\t2\t30\t40", "1.5 2 30 40", "  1.5,  2,30 ,40  ", "1.5, 2, 30, 40,"])
+def test_every_form_of_ground_truth_is_read(tmp_path: Path, line: str) -> None:
+    path = tmp_path / "groundtruth.txt"
+    path.write_text(f"{line}\n{line}\r\n\n")
+    assert read_truth(path).tolist() == [[1.5, 2, 30, 40]] * 2
+
+
+@pytest.mark.parametrize("absent", ["nan,nan,nan,nan", "NaN\tNaN\tNaN\tNaN", "0,0,0,0"])
+def test_frames_without_a_box_are_nan(tmp_path: Path, absent: str) -> None:
+    path = tmp_path / "groundtruth.txt"
+    path.write_text(f"{BOX}\n{absent}\n")
+    truth = read_truth(path)
+    assert truth[0].tolist() == [10, 12, 20, 22]
+    assert np.isnan(truth[1]).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "the file is empty"),
+        ("\n\n", "the file is empty"),
+        ("1,2,3\n", "groundtruth.txt:1: not four numbers x,y,w,h"),
+        (f"{BOX}\n1,2,3,4,5\n", "groundtruth.txt:2: not four numbers x,y,w,h"),
+        (f"{BOX}\nbox\n", "groundtruth.txt:2: not four numbers"),
+        (f"{BOX}\n1,inf,3,4\n", "groundtruth.txt:2: not four numbers"),
+        (f"{BOX}\n\n{BOX}\n", "groundtruth.txt:2: not four numbers"),
+        (f"{BOX}\n1,nan,3,4\n", "groundtruth.txt:2: nan in part of a box"),
+        (f"{BOX}\n1,2,0,4\n", "groundtruth.txt:2: a box without area"),
+        (f"{BOX}\n1,2,-3,4\n", "groundtruth.txt:2: a box without area"),
+        ("é\n", "not a text of numbers"),
+    ],
+)
+def test_bad_ground_truth_is_named_by_its_line(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "groundtruth.txt"
+    path.write_text(text)
+    with pytest.raises(DataError) as failure:
+        read_truth(path)
+    assert message in str(failure.value)
+    assert str(path) in str(failure.value)
+    assert "\n" not in str(failure.value)
+
+
+def test_frames_come_in_the_order_of_their_numbers(tmp_path: Path) -> None:
+    (tmp_path / "img").mkdir()
+    for number in (1, 2, 10, 100):
+        cv2.imwrite(str(tmp_path / "img" / f"frame{number}.png"), np.full((8, 8), number, np.uint8))
+    (tmp_path / "img" / "notes.txt").write_text("not a picture")
+    (tmp_path / "img" / "cover.png").write_text("a picture without a number")
+    (tmp_path / "groundtruth_rect.txt").write_text(f"{BOX}\n" * 4)
+    sequence = read_sequence(tmp_path)
+    assert [int(picture[0, 0]) for picture in sequence.pictures()] == [1, 2, 10, 100]
+    assert sequence.name == tmp_path.name
+    assert sequence.notes == ()
+
+
+@pytest.mark.parametrize(("lines", "frames", "kept"), [(3, 5, 3), (5, 3, 3)])
+def test_what_has_both_frame_and_line_is_evaluated_and_the_rest_is_told(tmp_path: Path, lines: int, frames: int, kept: int) -> None:
+    sequence = read_sequence(make(tmp_path, [BOX] * lines, frames))
+    assert (len(sequence), sequence.truth.shape) == (kept, (kept, 4))
+    (note,) = sequence.notes
+    assert f"{frames} frames but {lines} lines of ground truth: evaluated on the first {kept}" in note
+
+
+@pytest.mark.parametrize(
+    ("lines", "frames", "message"),
+    [
+        ([BOX], 1, "fewer than two frames"),
+        ([BOX] * 2, 0, "no numbered pictures"),
+        (["nan,nan,nan,nan", BOX], 2, "groundtruth.txt:1: no box to start from"),
+    ],
+)
+def test_a_directory_that_is_no_sequence_is_refused(tmp_path: Path, lines: list[str], frames: int, message: str) -> None:
+    with pytest.raises(DataError, match=message):
+        read_sequence(make(tmp_path, lines, frames))
+
+
+def test_a_directory_of_sequences_stands_for_them_and_the_unusable_are_told(tmp_path: Path) -> None:
+    make(tmp_path / "many" / "b", [BOX] * 2, 2)
+    make(tmp_path / "many" / "a", [BOX] * 2, 2, truth="groundtruth_rect.txt", folder=".")
+    make(tmp_path / "one" / "a", [BOX] * 2, 2)
+    (tmp_path / "many" / "README.md").write_text("text")
+    paths = [tmp_path / "many", tmp_path / "one" / "a", tmp_path / "none", tmp_path / "many" / "README.md"]
+    sequences, problems = find_sequences(paths)
+    assert [sequence.directory.name for sequence in sequences] == ["a", "b", "a"]
+    names = [sequence.name for sequence in sequences]
+    assert len(set(names)) == 3
+    assert names[1] == "b"
+    assert [problem.split(": ")[1] for problem in problems] == ["no such directory", "is not a directory"]
+
+
+def test_a_damaged_picture_is_named(tmp_path: Path) -> None:
+    sequence = read_sequence(make(tmp_path, [BOX] * 3, 3))
+    sequence.frames[1].write_bytes(b"not a picture")
+    pictures = sequence.pictures()
+    next(pictures)
+    with pytest.raises(DataError, match=r"0002\.png: not a picture that OpenCV reads, or damaged"):
+        next(pictures)
+    with pytest.raises(DataError, match="No such file"):
+        read_grey(tmp_path / "absent.png")

@@ -1,0 +1,183 @@
+"""Many sequences over a Dask cluster of two worker processes, one of which is killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+from distributed import Client, LocalCluster
+from pyarrow import parquet  # type: ignore[import-untyped]
+
+from asttrack.scene import Scene
+from terminal import all_shown, open_terminal, shown_until
+
+COUNT: Final = 6
+FRAMES: Final = 40
+PARTICLES: Final = 600  # so many that a sequence takes long enough to be caught in the act
+
+
+@pytest.fixture(scope="module")
+def sequences(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("fleet")
+    for number in range(COUNT):
+        Scene(frames=FRAMES, width=160, height=120, size=(28, 24), seed=number + 1).write(directory / f"scene{number}")
+    return directory
+
+
+@pytest.fixture
+def client() -> Iterator[Client]:
+    cluster = LocalCluster(  # type: ignore[no-untyped-call]
+        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None, silence_logs=50
+    )
+    with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
+        yield client
+
+
+def words(sequences: list[Path], *options: object) -> list[str]:
+    settings = ["--preset", "paper", "--set", f"particles={PARTICLES}"]
+    return [sys.executable, "-m", "asttrack", "fleet", *map(str, sequences), *settings, *map(str, options)]
+
+
+def fleet(*arguments: object) -> subprocess.CompletedProcess[str]:
+    sequences, *options = arguments
+    assert isinstance(sequences, list)
+    return subprocess.run(words(sequences, *options), capture_output=True, text=True, check=False, timeout=120)
+
+
+def busy_worker(client: Client) -> str:
+    """The address of a worker that has begun to track, when others are still to come."""
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        running = {address: keys for address, keys in client.processing().items() if keys}  # type: ignore[no-untyped-call]
+        if running:
+            return str(max(running, key=lambda address: len(running[address])))
+        time.sleep(0.02)
+    raise AssertionError("no worker began to work")
+
+
+def test_a_killed_worker_changes_nothing(client: Client, sequences: Path, tmp_path: Path) -> None:
+    address = client.scheduler_info()["address"]
+    calm = fleet([sequences], "--scheduler", address, "--out", tmp_path / "calm.csv", "--tracks", tmp_path / "calm_tracks.csv")
+    assert calm.returncode == 0, calm.stderr
+    before: dict[str, int] = client.run(os.getpid)
+
+    stormy: list[subprocess.CompletedProcess[str]] = []
+    arguments: list[Any] = [
+        [sequences],
+        "--scheduler",
+        address,
+        "--out",
+        tmp_path / "stormy.csv",
+        "--tracks",
+        tmp_path / "stormy_tracks.csv",
+    ]
+    thread = threading.Thread(target=lambda: stormy.append(fleet(*arguments)))
+    thread.start()
+    victim = busy_worker(client)
+    # Long enough to be inside a sequence, which takes some tenths of a second at least.
+    time.sleep(0.1)
+    still_at_work = client.processing()[victim]  # type: ignore[no-untyped-call]
+    os.kill(before[victim], signal.SIGKILL)
+    thread.join(120)
+    (done,) = stormy
+
+    assert still_at_work
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    client.wait_for_workers(2, timeout=60)
+    after: dict[str, int] = client.run(os.getpid)
+    assert before[victim] not in after.values()
+    assert len(set(before.values()) & set(after.values())) == 1
+
+    table = (tmp_path / "calm.csv").read_text()
+    assert [line.split(",")[0] for line in table.splitlines()[1:]] == [f"scene{number}" for number in range(COUNT)]
+    assert (tmp_path / "stormy.csv").read_text() == table
+    tracks = (tmp_path / "calm_tracks.csv").read_text()
+    assert len(tracks.splitlines()) == 1 + COUNT * FRAMES
+    assert (tmp_path / "stormy_tracks.csv").read_text() == tracks
+    assert done.stdout == calm.stdout
+
+
+def test_a_cluster_of_its_own_writes_parquet_and_tells_what_failed(sequences: Path, tmp_path: Path) -> None:
+    chosen = [sequences / "scene0", tmp_path / "absent", sequences / "scene1"]
+    done = fleet(
+        chosen,
+        "--set",
+        "particles=60",
+        "--workers",
+        2,
+        "--out",
+        tmp_path / "table.parquet",
+        "--tracks",
+        tmp_path / "tracks.parquet",
+    )
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == [f"asttrack: {tmp_path}/absent: no such directory"]
+    table = parquet.read_table(tmp_path / "table.parquet").to_pylist()
+    assert [row["sequence"] for row in table] == ["scene0", "scene1"]
+    assert all(row["frames"] == FRAMES and row["tracker"] == f"paper,particles={PARTICLES},particles=60" for row in table)
+    tracks = parquet.read_table(tmp_path / "tracks.parquet").to_pylist()
+    assert len(tracks) == 2 * FRAMES
+    assert [tracks[FRAMES - 1][side] for side in "xywh"] == pytest.approx([table[0][f"last_{side}"] for side in "xywh"], abs=0.01)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["table.parquet", "tracks.parquet"]
+
+
+def test_an_interrupt_keeps_what_is_finished(client: Client, sequences: Path, tmp_path: Path) -> None:
+    address = client.scheduler_info()["address"]
+    out = tmp_path / "table.csv"
+    process = subprocess.Popen(
+        words([sequences], "--scheduler", address, "--out", out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        # The client holds on to all its futures: a result stays with the scheduler once it is there.
+        if client.run_on_scheduler(finished_tasks) >= 1:  # type: ignore[no-untyped-call]
+            break
+        time.sleep(0.02)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 130, told
+    finished = len(out.read_text().splitlines()) - 1
+    assert 1 <= finished < COUNT
+    assert told.splitlines() == [f"asttrack: interrupted: {finished} of {COUNT} sequences are finished and kept"]
+
+
+def finished_tasks(dask_scheduler: Any) -> int:
+    return sum(task.state == "memory" for task in dask_scheduler.tasks.values())
+
+
+def test_no_scheduler_and_no_sequence_are_one_line(sequences: Path, tmp_path: Path) -> None:
+    done = fleet([tmp_path / "absent"], "--workers", 1)
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == [f"asttrack: {tmp_path}/absent: no such directory", "asttrack: no sequence was tracked"]
+    bad = fleet([sequences], "--scheduler", "nonsense://127.0.0.1:1")
+    assert bad.returncode == 1
+    assert bad.stderr.startswith("asttrack: nonsense://127.0.0.1:1: no Dask scheduler answers: ")
+    assert len(bad.stderr.splitlines()) == 1
+
+
+def test_an_interrupt_from_the_keyboard_ends_its_own_cluster_quietly(sequences: Path, tmp_path: Path) -> None:
+    reader, terminal = open_terminal()
+    process = subprocess.Popen(
+        words([sequences], "--workers", 1, "--out", tmp_path / "table.csv"),
+        stdout=subprocess.DEVNULL,
+        stderr=terminal,
+        start_new_session=True,
+    )
+    os.close(terminal)
+    shown = shown_until(reader, lambda text: f"1/{COUNT}" in text)
+    # A terminal sends it to the whole group of processes.
+    os.killpg(process.pid, signal.SIGINT)
+    shown += all_shown(reader)
+    assert process.wait(60) == 130, shown
+    assert "Traceback" not in shown
+    finished = len((tmp_path / "table.csv").read_text().splitlines()) - 1
+    assert 1 <= finished < COUNT
+    assert f"interrupted: {finished} of {COUNT} sequences are finished and kept" in shown

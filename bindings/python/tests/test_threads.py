@@ -1,0 +1,151 @@
+"""Trackers in threads: the GIL is released during a step, and no sharing corrupts anything."""
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from asttrack import Tracker
+from short_scene import BOXES, FRAMES
+
+ATTEMPTS = 3
+# Over wall time: two trackers on two cores come to nearly 2, two behind a lock to 1 (to 1.4 wanted, where others are busy).
+CORES_USED = 1.3
+CORES_WANTED = 1.6
+
+
+def slow_tracker() -> Tracker:
+    """A tracker whose step takes some ten milliseconds."""
+    tracker = Tracker("paper", particles=1500, patch_width=48, patch_height=48)
+    tracker.init_sequence(FRAMES[:3], BOXES[:3])
+    return tracker
+
+
+def run_together(*work: Callable[[], None]) -> None:
+    threads = [threading.Thread(target=each) for each in work]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
+def test_python_goes_on_during_a_step() -> None:
+    """On any number of cores: this thread gets far more than a turn a step while another one is inside the library."""
+    tracker = slow_tracker()
+    tracker.update(FRAMES[3])
+    begin = time.perf_counter()
+    for frame in FRAMES[4:8]:
+        tracker.update(frame)
+    step = (time.perf_counter() - begin) / 4
+
+    finished = threading.Event()
+
+    def update() -> None:
+        for frame in FRAMES[8:20]:
+            tracker.update(frame)
+        finished.set()
+
+    worker = threading.Thread(target=update)
+    turns = 0
+    worker.start()
+    while not finished.is_set():
+        time.sleep(step / 20)
+        turns += 1
+    worker.join()
+    assert turns > 3 * 12
+
+
+def wanted_seconds() -> float:
+    """Seconds for which this thread has run, or waited for nothing but a processor; not those in which it waited for a lock."""
+    running, waiting, _ = Path("/proc/thread-self/schedstat").read_text(encoding="ascii").split()
+    return (int(running) + int(waiting)) * 1e-9
+
+
+@pytest.mark.skipif(not Path("/proc/thread-self/schedstat").exists(), reason="this kernel does not tell what its threads wait for")
+def test_two_trackers_in_two_threads_use_two_cores() -> None:
+    """By processor time, where other processes leave two cores; otherwise by what the threads would have used."""
+    if len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("this process may use one core only")
+    trackers = slow_tracker(), slow_tracker()
+    wanted: list[float] = []
+
+    def follow(tracker: Tracker) -> None:
+        before = wanted_seconds()
+        for frame in FRAMES[3:15]:
+            tracker.update(frame)
+        wanted.append(wanted_seconds() - before)
+
+    reports = []
+    for _ in range(ATTEMPTS):
+        wanted.clear()
+        wall, used = time.perf_counter(), time.process_time()
+        run_together(*(partial(follow, tracker) for tracker in trackers))
+        wall, used = time.perf_counter() - wall, time.process_time() - used
+        if used / wall > CORES_USED:
+            return
+        reports.append(f"{used / wall:.2f} cores used, {sum(wanted) / wall:.2f} wanted")
+        if sum(wanted) / wall > CORES_WANTED:
+            return  # the machine was too busy to give them
+    pytest.fail(f"two threads did not use two cores: {'; '.join(reports)}")
+
+
+def test_threads_do_not_change_what_trackers_find() -> None:
+    def follow(seed: int, into: dict[int, bytes]) -> None:
+        tracker = Tracker("tiny", seed=seed)
+        tracker.init(FRAMES[0], BOXES[0])
+        for frame in FRAMES[1:]:
+            tracker.update(frame)
+        into[seed] = tracker.save()
+
+    alone: dict[int, bytes] = {}
+    together: dict[int, bytes] = {}
+    for seed in range(6):
+        follow(seed, alone)
+    run_together(*(partial(follow, seed, together) for seed in range(6)))
+    assert together == alone
+
+
+def test_one_tracker_in_many_threads_stays_whole() -> None:
+    tracker = Tracker("tiny")
+    tracker.init(FRAMES[0], BOXES[0])
+    failures: list[BaseException] = []
+
+    def use() -> None:
+        try:
+            for frame in FRAMES[1:]:
+                tracker.update(frame)
+                assert len(tracker.bag) <= 5
+                assert len(tracker.save()) == size
+        except BaseException as failure:
+            failures.append(failure)
+
+    size = len(tracker.save())
+    run_together(*[use] * 4)
+    assert failures == []
+    assert tracker.update(FRAMES[0]).frame == 4 * (len(FRAMES) - 1) + 1
+
+
+def test_closing_during_a_step_waits_for_it() -> None:
+    tracker = slow_tracker()
+    tracker.update(FRAMES[3])
+    running = threading.Event()
+    ends: list[str] = []
+
+    def update() -> None:
+        try:
+            while True:
+                tracker.update(FRAMES[4])
+                running.set()
+        except ValueError as error:
+            ends.append(str(error))
+
+    worker = threading.Thread(target=update)
+    worker.start()
+    running.wait()
+    tracker.close()
+    worker.join()
+    assert ends == ["this tracker is closed"]
