@@ -89,7 +89,7 @@ sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=a
 common_flags = $(CFLAGS) -std=c99 -ffp-contract=off $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
 lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
 command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
-test_flags = $(command_flags) -Isrc -Iexamples -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
+test_flags = $(command_flags) -iquote src -iquote examples -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
 	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE)
 
 link = $(CC) $(CFLAGS) $(sanitizers) $(LDFLAGS)
@@ -188,7 +188,7 @@ demo: $(BUILDDIR)/asttrack ## render a scene (or take FRAMES=directory), track i
 
 # ---- Tests ----
 
-.PHONY: test test-c test-programs test-python unity sanitize asan ubsan tsan
+.PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan
 test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary \
 	$(if $(wildcard bindings/python/pyproject.toml),$(BUILDDIR)/python/summary)
 comma := ,
@@ -230,13 +230,17 @@ test-python: .venv/installed ## the Python tests, in a virtual environment of th
 	    $(BUILDDIR)/python/junit.xml | awk '{ printf "Python tests: %d passed, %d failed, %d skipped\n", \
 	    $$4 - $$1 - $$2 - $$3, $$1 + $$2, $$3 }' > $(BUILDDIR)/python/summary; exit $$status
 # The package is built and installed anew when it or the library changes: the library is inside it.
-.venv/installed: $(wildcard include/*.h src/*.[ch]) $(shell find bindings/python/pyproject.toml bindings/python/CMakeLists.txt \
+.venv/installed: $(wildcard include/*.h src/*.[ch]) $(shell find bindings/python/pyproject.toml bindings/python/CMakeLists.txt bindings/python/header_version.py \
 		bindings/python/src -type f -not -name '*.pyc' 2>/dev/null)
 	@$(PYTHON) -c 'import venv, ensurepip' || { echo "$(PYTHON) cannot make virtual environments: on Debian, apt-get install \
 	python3-venv; or name another with PYTHON=" >&2; exit 1; }
 	[ -x .venv/bin/pip ] || $(PYTHON) -m venv .venv
 	.venv/bin/pip install --quiet --disable-pip-version-check './bindings/python[eval,peers,fleet,test]'
 	@touch $@
+
+lint-python: .venv/installed ## static analysis and layout of the Python sources
+	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden && \
+	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden && $(CURDIR)/.venv/bin/mypy
 
 sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them
 	$(if $(SANITIZE),,$(error say SANITIZE=address$(comma)undefined or another list))
