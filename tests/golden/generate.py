@@ -4,7 +4,14 @@ Independent of the library: double precision, numpy's SVD, the definitions as th
 `python3 generate.py`; the output is committed, so that the tests need no Python.
 """
 
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, TextIO
+
 import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[Any]
 
 TOLERANCE = 1e-5  # singular values at most this fraction of the set's Frobenius norm are absent directions
 
@@ -23,7 +30,7 @@ HEADER = """\
 """
 
 
-def fit(images, centred, n):
+def fit(images: Matrix, centred: bool, n: int) -> tuple[Matrix, Matrix]:
     """Mean and the present ones of n basis vectors, of images in rows."""
     columns = images.astype(np.float64).T
     mean = columns.mean(axis=1)
@@ -33,7 +40,7 @@ def fit(images, centred, n):
     return mean, u[:, :rank]
 
 
-def principal_angles(a, b, n):
+def principal_angles(a: Matrix, b: Matrix, n: int) -> Matrix:
     """Of n directions: those absent from both at 0, those of one alone at pi/2, the rest from the singular values of a'b."""
     ranks = a.shape[1], b.shape[1]
     angles = [0.0] * (n - max(ranks))
@@ -43,13 +50,16 @@ def principal_angles(a, b, n):
     return np.array(angles + [np.pi / 2] * (max(ranks) - min(ranks)))
 
 
-def text(value):
+def text(value: float) -> str:
+    """The shortest decimal that reads back as the same single-precision number."""
     return np.format_float_positional(np.float32(value), unique=True, trim="-")
 
 
-def write_case(out, name, basis, n, alpha, first, second):
+def write_case(out: TextIO, name: str, basis: str, n: int, alpha: float, first: Matrix, second: Matrix) -> None:
+    """One case: both sets, and what their subspaces and the distance between them are."""
     first, second = np.asarray(first, dtype=np.float32), np.asarray(second, dtype=np.float32)
-    assert first.shape[1] == second.shape[1]
+    if first.shape[1] != second.shape[1]:
+        raise ValueError(f"{name}: images of {first.shape[1]} and of {second.shape[1]} numbers")
     mean_a, a = fit(first, basis == "centred", n)
     mean_b, b = fit(second, basis == "centred", n)
     angles = principal_angles(a, b, n)
@@ -69,17 +79,17 @@ def write_case(out, name, basis, n, alpha, first, second):
     print("end", file=out)
 
 
-def pixels(rng, count, dim):
+def pixels(rng: np.random.Generator, count: int, dim: int) -> Matrix:
     """Grey values, 0 to 255."""
     return rng.integers(0, 256, (count, dim))
 
 
-def unit(rng, count, dim):
+def unit(rng: np.random.Generator, count: int, dim: int) -> Matrix:
     """Numbers in [0, 1) of four digits."""
     return np.round(rng.random((count, dim)), 4)
 
 
-def at_angles(rng, dim, angles):
+def at_angles(rng: np.random.Generator, dim: int, angles: Sequence[float]) -> list[Matrix]:
     """Two sets, each of the corners base +- direction, whose centred subspaces have these principal angles."""
     n = len(angles)
     q = np.linalg.qr(rng.standard_normal((dim, 2 * n)))[0]
@@ -88,7 +98,7 @@ def at_angles(rng, dim, angles):
     return [np.vstack([base + u.T, base - u.T]) for u in (q[:, :n], turned)]
 
 
-def cases(rng):
+def cases(rng: np.random.Generator) -> Iterator[tuple[str, int, float, Matrix, Matrix]]:
     """(name, n, alpha, first set, second set), each for both kinds of basis."""
     for n in range(1, 6):
         yield f"pixels-n{n}", n, 0.01, pixels(rng, n + 1, 100), pixels(rng, n + 2, 100)
@@ -137,9 +147,10 @@ def cases(rng):
         yield f"{name}-the-tolerance", 2, 0.64, base, unit(rng, 3, 30)
 
 
-def main():
+def main() -> None:
+    """All cases with both kinds of basis."""
     rng = np.random.default_rng(20130617)
-    with open("subspaces.txt", "w", encoding="ascii") as out:
+    with Path("subspaces.txt").open("w", encoding="ascii") as out:
         out.write(HEADER)
         for name, n, alpha, first, second in cases(rng):
             for basis in ("centred", "raw"):
