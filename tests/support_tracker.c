@@ -57,9 +57,8 @@ void guarded_open(struct guarded *block, size_t size, size_t remainder, int fill
 }
 
 void guarded_check(const struct guarded *block) {
-    for (int i = 1; i <= GUARD; i++) TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, block->memory[-i], "before the block");
-    for (size_t i = 0; i < GUARD; i++)
-        TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, block->memory[block->size + i], "behind the block");
+    TEST_ASSERT_EACH_EQUAL_HEX8_MESSAGE(GUARD_BYTE, block->memory - GUARD, GUARD, "before the block");
+    TEST_ASSERT_EACH_EQUAL_HEX8_MESSAGE(GUARD_BYTE, block->memory + block->size, GUARD, "behind the block");
 }
 
 void guarded_close(struct guarded *block) {

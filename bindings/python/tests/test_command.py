@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -314,13 +315,13 @@ def test_an_interrupted_eval_keeps_what_is_finished(tmp_path: Path, number: sign
         text=True,
     )
     os.close(terminal)
-    shown = shown_until(reader, lambda text: f"3/{planned}" in text)
+    shown = shown_until(reader, lambda text: re.search(rf"\b[1-9]\d*/{planned}", text) is not None)
     process.send_signal(number)
     shown += all_shown(reader)
     output, _ = process.communicate(timeout=60)
     assert process.returncode == 130, shown
     finished = len(rows(out / "results.csv"))
-    assert 3 <= finished < planned
+    assert 1 <= finished < planned
     assert f"interrupted: {finished} of {planned} runs are finished and kept" in shown
     assert "Traceback" not in shown
     assert "scene" in output

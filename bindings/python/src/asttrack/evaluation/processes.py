@@ -3,9 +3,11 @@
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import Connection, wait
-from multiprocessing.context import BaseContext
+from multiprocessing.context import ForkServerContext
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
@@ -54,7 +56,7 @@ def run_each(
         function: importable by name, as its tasks and results are pickled.
         tasks: what to call it on.
         jobs: processes at a time, at least one.
-        preload: modules to import once, before the first process, where the system can.
+        preload: modules to import once, before the first process.
 
     Yields:
         A task with what the function returned, with the exception that it raised, or with `DiedError`.
@@ -65,8 +67,9 @@ def run_each(
     try:
         while True:
             while len(running) < jobs and (task := next(queue, None)) is not None:
-                work = _start(context, function, task)
-                running[work.receiver] = work
+                with _interrupts_held():
+                    work = _start(context, function, task)
+                    running[work.receiver] = work
             if not running:
                 return
             for ready in wait(list(running)):
@@ -80,32 +83,46 @@ def run_each(
             work.end()
 
 
-def _context(preload: list[str]) -> BaseContext:
-    """Where there is one, a server that has loaded everything and forks: a process then costs milliseconds."""
+def _context(preload: list[str]) -> ForkServerContext:
+    """A server that has loaded everything and forks: a new process then costs milliseconds."""
     os.environ.update(ONE_THREAD)
-    methods = multiprocessing.get_all_start_methods()
-    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    if "forkserver" in methods:
-        context.set_forkserver_preload(preload)
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(preload)
+    # What starts the server undoes the mask when it has to start this one, too: so it comes first.
+    resource_tracker.ensure_running()
+    with _interrupts_held():
+        forkserver.ensure_running()
     return context
 
 
-def _start(context: BaseContext, function: Callable[[Task], Outcome], task: Task) -> _Work[Task]:
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Keeps the keyboard's interrupt waiting; processes that are started meanwhile never get one."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _start(context: ForkServerContext, function: Callable[[Task], Outcome], task: Task) -> _Work[Task]:
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(function, task, sender), daemon=True)  # type: ignore[attr-defined]
+    process = context.Process(target=_work, args=(function, task, sender), daemon=True)
     process.start()
     sender.close()
     return _Work(task, process, receiver)
 
 
 def _work(function: Callable[[Any], Any], task: Any, sender: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         result = function(task)
     except Exception as error:  # whatever it is, it is the caller's to judge
-        sender.send(error)
-    else:
+        result = error
+    try:
         sender.send(result)
+    except BrokenPipeError:
+        # The caller was interrupted, and wants no more results.
+        return
 
 
 def _how_it_ended(code: int | None) -> str:
