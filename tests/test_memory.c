@@ -141,7 +141,7 @@ static void test_nothing_is_allocated_at_the_presets_sizes(void) {
             }
             ast_tracker *t = tracker_new(&cfg, backends[b]);
             const long before = allocations();
-            TEST_ASSERT_EQUAL_INT(AST_OK, start_and_step(t, 25, NULL));
+            TEST_ASSERT_EQUAL_INT(AST_OK, start_and_step(t, 13, NULL));
             TEST_ASSERT_EQUAL_INT_MESSAGE(before, allocations(), backends[b]->name);
             ast_free(t);
         }

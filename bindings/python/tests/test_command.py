@@ -313,10 +313,15 @@ def test_an_interrupted_eval_keeps_what_is_finished(tmp_path: Path, number: sign
         stdout=subprocess.PIPE,
         stderr=terminal,
         text=True,
+        start_new_session=True,
     )
     os.close(terminal)
     shown = shown_until(reader, lambda text: re.search(rf"\b[1-9]\d*/{planned}", text) is not None)
-    process.send_signal(number)
+    if number == signal.SIGINT:
+        # A terminal sends it to the whole group of processes.
+        os.killpg(process.pid, number)
+    else:
+        process.send_signal(number)
     shown += all_shown(reader)
     output, _ = process.communicate(timeout=60)
     assert process.returncode == 130, shown

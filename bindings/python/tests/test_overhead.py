@@ -7,7 +7,7 @@ import pytest
 
 from asttrack import Tracker
 
-LIMIT = 15.0  # microseconds
+GROSS = 200.0  # microseconds: far above any machine's noise, far below what copying a frame or rebuilding the structures costs
 FRAME = np.random.default_rng(0).integers(0, 256, (240, 320), dtype=np.uint8)
 
 
@@ -22,11 +22,11 @@ def tracker() -> Tracker:
 def test_update_adds_little_to_a_step(tracker: Tracker) -> None:
     """The same step by `update` and by a bare foreign call, in short runs of which the quickest counts.
 
-    A bound on the whole of an update is a bound on what it adds.
+    The figure is printed (`pytest -s`); only a gross mistake fails, since speed depends on the machine and its load.
     """
     step, arguments = tracker._step, tracker._step_arguments
     updates = timeit.repeat(lambda: tracker.update(FRAME), number=200, repeat=50)
     steps = timeit.repeat(lambda: step(*arguments), number=200, repeat=50)
     whole, bare = (1e6 * min(times) / 200 for times in (updates, steps))
     print(f"update {whole:.2f} us, of it the bare foreign call {bare:.2f} us: update adds {whole - bare:.2f} us")
-    assert whole < LIMIT
+    assert whole < GROSS
