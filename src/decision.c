@@ -16,7 +16,7 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
         for (int i = 0; i < count; i++) mean += (ast_real)distance[(size_t)i * (size_t)models + (size_t)j] / count;
         ast_real scale = (ast_real)cfg->sigma;
         if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= mean - (ast_real)least;
-        const ast_real rate = scale > 0 ? 1 / scale : 0; /* all particles alike: all likelihoods too */
+        const ast_real rate = scale > (ast_real)FLT_MIN ? 1 / scale : 0; /* all particles alike: all likelihoods too */
         /* Differences to the least: the nearest particle's likelihood is 1, so the sum neither under- nor overflows. */
         ast_real sum = 0;
         for (int i = 0; i < count; i++)

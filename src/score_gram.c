@@ -225,6 +225,7 @@ static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
 struct candidate {
     const float *inner; /* d'columns */
     ast_real square;    /* |d|^2 */
+    ast_real length;    /* the same before the metric: what rounding is relative to */
     ast_real rho;       /* length of what Q does not explain of d; 0 when that is nothing */
     ast_real q[AST_MAX_HISTORY];
     const ast_real *residual; /* d - Q q where e's inner products must be computed from it; else NULL */
@@ -265,7 +266,7 @@ static void project(const struct ast_gram *s, const struct ast_scene *scene, con
     ast_real rest = c->square - explained;
     if (scene->background > 0) {
         /* Inner products corrected for the metric carry single precision's rounding: below it there is no direction to speak of. */
-        if (rest < (ast_real)1e-6 * c->square) rest = 0;
+        if (rest < (ast_real)1e-6 * c->length) rest = 0;
     } else if (rest < RESIDUAL_TOLERANCE * c->square) {
         rest = residual_of(s, bag, d, residual, c->q);
         c->residual = residual;
@@ -383,6 +384,7 @@ static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float
     struct ast_bag *bag = scene->bag;
     const int columns = ast_bag_columns(bag);
     const float *reference = bag->columns;
+    ast_real length[AST_TILE];
     for (int i = 0; i < count; i++) {
         float *d = patches + (size_t)i * (size_t)bag->stride;
         for (int p = 0; p < s->dim; p++) d[p] -= reference[p];
@@ -392,7 +394,7 @@ static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float
     if (failed) return failed;
     for (int i = 0; i < count; i++) {
         const float *d = patches + (size_t)i * (size_t)bag->stride;
-        s->square[i] = ast_dot(d, d, s->dim);
+        s->square[i] = length[i] = ast_dot(d, d, s->dim);
     }
     if (scene->background > 0) {
         const int mean = background_mean(scene->cfg);
@@ -406,7 +408,7 @@ static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float
         }
     }
     for (int i = 0; i < count; i++) {
-        struct candidate c = {.inner = s->inner + (size_t)i * (size_t)columns, .square = s->square[i]};
+        struct candidate c = {.inner = s->inner + (size_t)i * (size_t)columns, .square = s->square[i], .length = length[i]};
         project(s, scene, patches + (size_t)i * (size_t)bag->stride, &c);
         decompose(s, scene, &c);
         for (int j = 0; j < bag->count; j++)

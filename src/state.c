@@ -109,7 +109,7 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
         code_floats(c, t->history.patches + (size_t)slot * (size_t)t->history.stride, dim, -value, value, slot < t->history.count);
 
     code_int(c, &t->bag.count, 0, t->bag.capacity);
-    code_int(c, &t->bag.oldest, 0, t->bag.capacity - 1);
+    code_int(c, &t->bag.oldest, t->bag.keep_first, t->bag.capacity - 1);
     for (int slot = 0; slot < t->bag.capacity; slot++) {
         const int in_use = slot < t->bag.count;
         int rank = in_use ? t->bag.rank[slot] : 0;

@@ -278,7 +278,7 @@ static void test_quasi_random_walk_is_an_additive_sequence(void) {
     const struct ast_state state = {2000, 1500, 1.5f};
     struct ast_cloud cloud = cloud_of(0, COUNT);
     struct ast_random random;
-    double g = 1.2, last[3] = {0, 0, 0};
+    double g = 1.2, first[3] = {0, 0, 0};
     for (int i = 0; i < 60; i++) g = sqrt(sqrt(g + 1));
     cfg.draws = AST_DRAWS_QUASI;
     ast_cloud_gather(&cloud, &state);
@@ -288,9 +288,10 @@ static void test_quasi_random_walk_is_an_additive_sequence(void) {
         const double z[3] = {((double)cloud.x[i] - 2000) / 8, ((double)cloud.y[i] - 1500) / 5,
                              log((double)cloud.scale[i] / 1.5) / (double)cfg.walk_scale};
         for (int a = 0; a < 3; a++) {
-            const double turn = normal_probability(z[a]), step = turn - last[a] - pow(g, -(a + 1));
-            if (i > 0) TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0, step - floor(step + 0.5));
-            last[a] = turn;
+            const double turn = normal_probability(z[a]);
+            if (i == 0) first[a] = turn;
+            const double error = turn - first[a] - i * pow(g, -(a + 1));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0, error - floor(error + 0.5));
         }
     }
 }

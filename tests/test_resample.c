@@ -235,6 +235,10 @@ static void test_averaging_stops_at_the_most_taps(void) {
     for (float step = 20.0f; step < 100.0f; step *= 1.11f)
         assert_window(&frame, 200.3f - 2 * step, 199.8f - 2 * step, 4 * step, 4 * step);
     assert_window(&frame, 10, 10, 4 * 29, 4 * 29);
+    assert_window(&frame, -500, -600, 1400, 1500); /* samples on both edges, gaps between */
+    lay_out(9, 9, 0);
+    assert_window(&frame, -200, -100, 800, 700);
+    lay_out(4, 4, 0);
     assert_window(&frame, 10.5f, 10.5f, 4 * 29.0172f, 4 * 29.0172f); /* the box reaches its limit here */
     assert_window(&frame, 10.25f, 10.25f, 4 * 30, 4 * 31);
     free(pixels);

@@ -937,8 +937,9 @@ static void test_step_before_start(void) {
     ast_free(t);
 }
 
-/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed. */
-static int start_with_model(ast_tracker *t, int history) {
+/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed; larger: pixels by which the boxes
+ * are larger than the object. */
+static int start_with_model(ast_tracker *t, int history, float larger) {
     const ast_box box = truth(0);
     const ast_frame frame = render_frame(&scene, &box);
     ast_frame frames[AST_MAX_HISTORY];
@@ -947,6 +948,8 @@ static int start_with_model(ast_tracker *t, int history) {
         frames[j] = frame;
         boxes[j] = box;
         boxes[j].x += 0.5f * (float)(history - 1 - j);
+        boxes[j].w += larger;
+        boxes[j].h += larger;
     }
     return ast_start_sequence(t, frames, boxes, history);
 }
@@ -957,10 +960,10 @@ static void fail_at_every_call(const ast_config *cfg, const struct ast_linalg *l
     int failed_starts = 0, failed_steps = 0;
     faulty_arm(la, 0);
     ast_tracker *t = tracker_new(cfg, &faulty_linalg), *control = tracker_new(cfg, &faulty_linalg);
-    TEST_ASSERT_EQUAL_INT(AST_OK, start_with_model(control, cfg->history));
+    TEST_ASSERT_EQUAL_INT(AST_OK, start_with_model(control, cfg->history, 0.0f));
     for (int code = AST_E_BACKEND, k = 1; code != AST_OK; k++) {
         faulty_arm(la, k);
-        code = start_with_model(t, cfg->history);
+        code = start_with_model(t, cfg->history, 0.0f);
         TEST_ASSERT_EQUAL_INT(faulty_calls() == k ? AST_E_BACKEND : AST_OK, code);
         TEST_ASSERT_EQUAL_INT(code == AST_OK ? 1 : AST_E_NOT_STARTED, ast_bag_count(t));
         failed_starts += code != AST_OK;
@@ -993,7 +996,7 @@ static void fail_at_every_call(const ast_config *cfg, const struct ast_linalg *l
 
         /* a start that fails in the middle of tracking leaves the tracking */
         faulty_arm(la, 1);
-        TEST_ASSERT_EQUAL_INT(AST_E_BACKEND, start_with_model(t, cfg->history));
+        TEST_ASSERT_EQUAL_INT(AST_E_BACKEND, start_with_model(t, cfg->history, 5.0f));
         saved_check(&after, t, "a start that failed");
         saved_free(&before);
         saved_free(&after);
