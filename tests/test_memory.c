@@ -11,6 +11,7 @@
 #include <lapacke.h>
 #endif
 
+#include "support_faulty.h"
 #include "support_render.h"
 #include "support_tracker.h"
 #include "unity.h"
@@ -178,6 +179,18 @@ static void test_own_block_is_one_allocation(void) {
         ast_free(t);
         TEST_ASSERT_EQUAL_INT(before + 1, allocations());
     }
+}
+
+/* One allocation and its release, also when the backend is what fails. */
+static void test_failed_init_keeps_no_block(void) {
+    const ast_config cfg = small_config();
+    ast_tracker *t = NULL;
+    faulty_arm(&ast_linalg_builtin, 0);
+    faulty_prepare_fails(1);
+    const long before = allocations();
+    TEST_ASSERT_EQUAL_INT(AST_E_BACKEND, ast_init_backend(&t, &cfg, &faulty_linalg, NULL, 0));
+    TEST_ASSERT_EQUAL_INT(before + 2, allocations());
+    TEST_ASSERT_NULL(t);
 }
 
 static void test_callers_block_is_not_freed(void) {
@@ -457,6 +470,7 @@ int main(void) {
     RUN_TEST(test_counter_sees_allocations);
     RUN_TEST(test_geometry_allocates_nothing);
     RUN_TEST(test_own_block_is_one_allocation);
+    RUN_TEST(test_failed_init_keeps_no_block);
     RUN_TEST(test_callers_block_is_not_freed);
     RUN_TEST(test_exact_size_passes_at_every_alignment);
     RUN_TEST(test_what_the_block_held_does_not_matter);

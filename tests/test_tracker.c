@@ -602,6 +602,47 @@ static void test_start_sequence_clamps_the_scale(void) {
 
 /* ---- Repeating ---- */
 
+/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed; larger: pixels by which the boxes
+ * are larger than the object. */
+static int start_with_model(ast_tracker *t, int history, float larger) {
+    const ast_box box = truth(0);
+    const ast_frame frame = render_frame(&scene, &box);
+    ast_frame frames[AST_MAX_HISTORY];
+    ast_box boxes[AST_MAX_HISTORY];
+    for (int j = 0; j < history; j++) {
+        frames[j] = frame;
+        boxes[j] = box;
+        boxes[j].x += 0.5f * (float)(history - 1 - j);
+        boxes[j].w += larger;
+        boxes[j].h += larger;
+    }
+    return ast_start_sequence(t, frames, boxes, history);
+}
+
+/* A start in the middle of a bad run is as good as the first: the same state to the last bit. */
+static void test_start_forgets_everything(void) {
+    for (int which = 0; which < VARIANTS; which++) {
+        const ast_config cfg = variant(which);
+        for (int boxes = 1; boxes <= cfg.history; boxes += cfg.history - 1) {
+            ast_tracker *t = tracker_new(&cfg, backends[0]), *fresh = tracker_new(&cfg, backends[0]);
+            start(t);
+            for (int f = 1; f < 20; f++) {
+                const ast_box box = truth(f);
+                const ast_frame frame = render_frame(&scene, f < 12 ? &box : NULL);
+                if (f % 2 == 0 && f >= 12) memset(scene.pixels, 40, (size_t)WIDTH * HEIGHT);
+                TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, NULL));
+            }
+            TEST_ASSERT_EQUAL_INT(AST_OK, start_with_model(t, boxes, 0.0f));
+            TEST_ASSERT_EQUAL_INT(AST_OK, start_with_model(fresh, boxes, 0.0f));
+            struct saved saved = saved_from(fresh);
+            saved_check(&saved, t, "started again");
+            saved_free(&saved);
+            ast_free(t);
+            ast_free(fresh);
+        }
+    }
+}
+
 static void run(ast_tracker *t, int steps, ast_result *results) {
     start(t);
     for (int f = 1; f <= steps; f++) results[f - 1] = step(t, f);
@@ -937,23 +978,6 @@ static void test_step_before_start(void) {
     ast_free(t);
 }
 
-/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed; larger: pixels by which the boxes
- * are larger than the object. */
-static int start_with_model(ast_tracker *t, int history, float larger) {
-    const ast_box box = truth(0);
-    const ast_frame frame = render_frame(&scene, &box);
-    ast_frame frames[AST_MAX_HISTORY];
-    ast_box boxes[AST_MAX_HISTORY];
-    for (int j = 0; j < history; j++) {
-        frames[j] = frame;
-        boxes[j] = box;
-        boxes[j].x += 0.5f * (float)(history - 1 - j);
-        boxes[j].w += larger;
-        boxes[j].h += larger;
-    }
-    return ast_start_sequence(t, frames, boxes, history);
-}
-
 /* A backend that fails at its k-th call, for every k that a start and the steps of some rounds of the bag make: the state stays, and
  * the same frame afterwards gives what it would have given. */
 static void fail_at_every_call(const ast_config *cfg, const struct ast_linalg *la) {
@@ -1034,6 +1058,7 @@ int main(void) {
     RUN_TEST(test_velocity_moves_the_cloud);
     RUN_TEST(test_start_sequence_takes_the_last_boxes);
     RUN_TEST(test_start_sequence_clamps_the_scale);
+    RUN_TEST(test_start_forgets_everything);
     RUN_TEST(test_same_seed_same_bits);
     RUN_TEST(test_other_seeds_other_clouds);
     RUN_TEST(test_result_is_optional);

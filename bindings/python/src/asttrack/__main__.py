@@ -74,5 +74,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 if __name__ == "__main__":
     # Told to end is like interrupted from the keyboard: what is finished is kept.
+    # A shell starts what it runs in the background with SIGINT ignored; a run of hours must be able to end and keep what it has.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, lambda _number, _frame: signal.raise_signal(signal.SIGINT))
     sys.exit(main())
