@@ -571,7 +571,7 @@ static void fill(unsigned char *at, size_t count, float value, size_t period) {
 /* The largest value of a patch that the checks let pass. */
 static float largest_accepted(ast_tracker *t, struct saved *block, unsigned char *at) {
     const uint32_t keep = get_word(at);
-    float value = 1e30f;
+    float value = 1e20f;
     for (;; value *= 0.8f) {
         TEST_ASSERT_TRUE(value > 1e-3f);
         put_float(at, value);
