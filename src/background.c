@@ -1,6 +1,5 @@
 #include "background.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "real.h"
@@ -8,10 +7,10 @@
 ast_box ast_background_box(const ast_box *object, struct ast_random *random) {
     const float angle = 6.28318531f * ast_random_uniform(random);
     const float distance = 0.4f + 1.1f * ast_random_uniform(random);
-    const float growth = expf(0.05f * ast_random_normal(random));
+    const float growth = ast_expf(0.05f * ast_random_normal(random));
     const float w = object->w * growth, h = object->h * growth;
-    const float x = object->x + 0.5f * object->w + distance * object->w * cosf(angle);
-    const float y = object->y + 0.5f * object->h + distance * object->h * sinf(angle);
+    const float x = object->x + 0.5f * object->w + distance * object->w * ast_cosf(angle);
+    const float y = object->y + 0.5f * object->h + distance * object->h * ast_sinf(angle);
     const ast_box box = {x - 0.5f * w, y - 0.5f * h, w, h};
     return box;
 }

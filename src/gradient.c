@@ -1,6 +1,5 @@
 #include "gradient.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "vector.h"
@@ -114,8 +113,8 @@ void ast_gradient_prepare(struct ast_gradient *g, const ast_frame *image, float 
             float gx, gy;
             difference(image, x, y, &gx, &gy);
             const float square = gx * gx + gy * gy, mean = g->energy[(size_t)y * (size_t)g->side + (size_t)x];
-            const float gain = 1.0f / (sqrtf(mean > 0.0f ? mean : 0.0f) + 6.0f); /* 6: a camera's noise is not raised */
-            const float rate = square > 0.0f ? gain / (square * sqrtf(square)) : 0.0f;
+            const float gain = 1.0f / (ast_sqrtf(mean > 0.0f ? mean : 0.0f) + 6.0f); /* 6: a camera's noise is not raised */
+            const float rate = square > 0.0f ? gain / (square * ast_sqrtf(square)) : 0.0f;
             float *map = g->row + (size_t)x * AST_DIRECTIONS;
             for (int k = 0; k < AST_DIRECTIONS; k++) {
                 const float along = gx * cosine[k] + gy * sine[k];
@@ -137,12 +136,12 @@ void ast_gradient_cells(const struct ast_gradient *g, const ast_box *window, flo
     const int length = g->cells * g->cells * AST_DIRECTIONS;
     for (int r = 0; r < g->cells; r++) {
         const float y = window->y + ((float)r + 0.5f) * window->h / (float)g->cells - 0.5f;
-        const float floor_y = floorf(y), down = y - floor_y;
+        const float floor_y = ast_floorf(y), down = y - floor_y;
         const uint8_t *upper = g->maps + (size_t)edge((int)floor_y, g->height) * (size_t)g->side * AST_DIRECTIONS;
         const uint8_t *lower = g->maps + (size_t)edge((int)floor_y + 1, g->height) * (size_t)g->side * AST_DIRECTIONS;
         for (int c = 0; c < g->cells; c++) {
             const float x = window->x + ((float)c + 0.5f) * window->w / (float)g->cells - 0.5f;
-            const float floor_x = floorf(x), right = x - floor_x;
+            const float floor_x = ast_floorf(x), right = x - floor_x;
             const size_t x0 = (size_t)edge((int)floor_x, g->width) * AST_DIRECTIONS;
             const size_t x1 = (size_t)edge((int)floor_x + 1, g->width) * AST_DIRECTIONS;
             const float top_right = (1.0f - down) * right, top_left = (1.0f - down) - top_right;

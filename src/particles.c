@@ -1,7 +1,5 @@
 #include "particles.h"
 
-#include <math.h>
-
 #include "real.h"
 
 void ast_cloud_set(struct ast_cloud *cloud, int i, struct ast_state state) {
@@ -79,7 +77,7 @@ void ast_cloud_diffuse(struct ast_cloud *cloud, const ast_config *cfg, const ast
         float normal[3];
         draw(&draws, quasi, random, normal);
         const struct ast_state moved = {cloud->x[i] + cfg->walk_x * normal[0], cloud->y[i] + cfg->walk_y * normal[1],
-                                        cloud->scale[i] * expf(cfg->walk_scale * normal[2])};
+                                        cloud->scale[i] * ast_expf(cfg->walk_scale * normal[2])};
         ast_cloud_set(cloud, i, ast_state_within(moved, cfg, frame));
     }
 }

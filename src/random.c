@@ -1,6 +1,6 @@
 #include "random.h"
 
-#include <math.h>
+#include "maths.h"
 
 #define PCG_MULTIPLIER UINT64_C(6364136223846793005)
 #define PCG_INCREMENT UINT64_C(1442695040888963407)
@@ -28,12 +28,12 @@ float ast_random_uniform(struct ast_random *r) {
 /* Wichura's algorithm AS 241, routine PPND7 (Applied Statistics 37, 1988): rational approximations good to about 1e-7. */
 float ast_normal_quantile(float p) {
     const float q = p - 0.5f;
-    if (fabsf(q) <= 0.425f) {
+    if (ast_fabsf(q) <= 0.425f) {
         const float r = 0.180625f - q * q;
         return q * (((59.109374720f * r + 159.29113202f) * r + 50.434271938f) * r + 3.3871327179f) /
                (((67.187563600f * r + 78.757757664f) * r + 17.895169469f) * r + 1.0f);
     }
-    float r = sqrtf(-logf(q < 0.0f ? p : 1.0f - p));
+    float r = ast_sqrtf(-ast_logf(q < 0.0f ? p : 1.0f - p));
     float value;
     if (r <= 5.0f) {
         r -= 1.6f;

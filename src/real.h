@@ -6,31 +6,56 @@
 #define AST_REAL_H
 
 #include <float.h>
-#include <math.h>
+
+#include "maths.h"
 
 #ifndef AST_REAL
 #define AST_REAL double
 #endif
 typedef AST_REAL ast_real;
 
-/* One branch is dead at compile time, so a float build links no double function. */
+/* 1 or 0, for the preprocessor: a float build compiles no double function. */
+#define AST_REAL_IS_float 0
+#define AST_REAL_IS_double 1
+#define AST_REAL_NAMED(type) AST_REAL_IS_##type
+#define AST_REAL_EXPANDED(type) AST_REAL_NAMED(type)
+#define AST_REAL_IS_DOUBLE AST_REAL_EXPANDED(AST_REAL)
+
+#if AST_REAL_IS_DOUBLE
+#define AST_REAL_EPSILON DBL_EPSILON
 static inline ast_real ast_sqrt(ast_real v) {
-    return sizeof(ast_real) == sizeof(float) ? (ast_real)sqrtf((float)v) : (ast_real)sqrt((double)v);
+    return AST_SQUARE_ROOT(v);
 }
 static inline ast_real ast_acos(ast_real v) {
-    return sizeof(ast_real) == sizeof(float) ? (ast_real)acosf((float)v) : (ast_real)acos((double)v);
+    return ast_acos_double(v);
 }
+/* For |v| <= pi / 3. */
 static inline ast_real ast_cos(ast_real v) {
-    return sizeof(ast_real) == sizeof(float) ? (ast_real)cosf((float)v) : (ast_real)cos((double)v);
+    return ast_cos_double(v);
 }
 static inline ast_real ast_exp(ast_real v) {
-    return sizeof(ast_real) == sizeof(float) ? (ast_real)expf((float)v) : (ast_real)exp((double)v);
+    return ast_exp_double(v);
 }
+#else
+#define AST_REAL_EPSILON FLT_EPSILON
+static inline ast_real ast_sqrt(ast_real v) {
+    return ast_sqrtf(v);
+}
+static inline ast_real ast_acos(ast_real v) {
+    return ast_acosf(v);
+}
+static inline ast_real ast_cos(ast_real v) {
+    return ast_cosf(v);
+}
+static inline ast_real ast_exp(ast_real v) {
+    return ast_expf(v);
+}
+#endif
 static inline ast_real ast_fabs(ast_real v) {
     return v < 0 ? -v : v;
 }
 static inline ast_real ast_real_epsilon(void) {
-    return sizeof(ast_real) == sizeof(float) ? (ast_real)FLT_EPSILON : (ast_real)DBL_EPSILON;
+    return AST_REAL_EPSILON;
 }
 
 #define AST_HALF_PI ((ast_real)1.57079632679489661923)

@@ -1,6 +1,6 @@
 #include "resample.h"
 
-#include <math.h>
+#include "maths.h"
 
 static void axis_layout(struct ast_axis *axis, int length, struct ast_arena *arena) {
     axis->first = ast_arena_take(arena, (size_t)length, sizeof *axis->first);
@@ -28,14 +28,14 @@ static float triangle_integral(float t) {
 static void axis_weights(struct ast_axis *axis, float start, float extent, int source_length) {
     const float step = extent / (float)axis->length;
     const float limit = (float)(AST_TAPS - 3);
-    float blur = step > 1.0f ? sqrtf(step * step - 1.0f) : 0.0f;
+    float blur = step > 1.0f ? ast_sqrtf(step * step - 1.0f) : 0.0f;
     if (blur > limit) blur = limit;
     const float half = 0.5f * blur;
     const int averaged = blur > 1e-2f; /* below, the quotient of differences would be rounding noise */
 
     for (int i = 0; i < axis->length; i++) {
         const float at = start + ((float)i + 0.5f) * step - 0.5f;
-        const int low = (int)floorf(at - half), high = (int)floorf(at + half) + 1;
+        const int low = (int)ast_floorf(at - half), high = (int)ast_floorf(at + half) + 1;
         const int last = source_length - 1;
         const int first = low < 0 ? 0 : low > last ? last : low;
         float *weight = axis->weight + (size_t)i * AST_TAPS;

@@ -196,7 +196,7 @@ int ast_start(ast_tracker *t, const ast_frame *frame, const ast_box *box) {
 
 /* The state of a box whose object had the first box at scale 1; areas decide where the sides disagree. */
 static struct ast_state state_of(const ast_config *cfg, const ast_box *box, const ast_box *first) {
-    const float scale = sqrtf((box->w / first->w) * (box->h / first->h));
+    const float scale = ast_sqrtf((box->w / first->w) * (box->h / first->h));
     struct ast_state state = {box->x + 0.5f * box->w, box->y + 0.5f * box->h, scale};
     if (state.scale < cfg->scale_min) state.scale = cfg->scale_min;
     if (state.scale > cfg->scale_max) state.scale = cfg->scale_max;
@@ -315,7 +315,7 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
 
 /* The frame's candidates: the last cloud's, moved on; while the object is lost, a growing cloud around where it was last seen. */
 static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_random *random) {
-    const float size = sqrtf(t->box_width * t->box_height) * t->estimate.scale;
+    const float size = ast_sqrtf(t->box_width * t->box_height) * t->estimate.scale;
     const ast_config walk = ast_guard_walk(&t->guard, &t->cfg, size);
     if (t->guard.lost) {
         ast_cloud_gather(&t->proposal, &t->guard.good);
@@ -364,7 +364,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     describe(t, &found_box, vector);
     const float score = ast_confidence_score(vector, t->anchor, &t->bag);
     const float likeness = ast_guard_likeness(vector, t->anchor, t->background.size > 0 ? t->background.mean : NULL, t->dim);
-    const float spread = ast_cloud_spread(&t->proposal) / sqrtf(found_box.w * found_box.h);
+    const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
     const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, likeness, spread);
     const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;

@@ -1,6 +1,6 @@
 #include "view.h"
 
-#include <math.h>
+#include "maths.h"
 
 void ast_view_layout(struct ast_view *view, const ast_config *cfg, struct ast_arena *arena) {
     const size_t side = (size_t)cfg->view;
@@ -17,16 +17,16 @@ static int within(float v, int low, int high) {
 }
 
 void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box *region, const ast_box *object) {
-    const float size = sqrtf(object->w * object->h), longest = region->w > region->h ? region->w : region->h;
+    const float size = ast_sqrtf(object->w * object->h), longest = region->w > region->h ? region->w : region->h;
     view->image = *frame;
     view->origin_x = view->origin_y = 0.0f;
     view->pixel = 1.0f;
     if (view->side == 0) return;
 
     /* The region's part inside the frame; at least one pixel. */
-    const int left = within(floorf(region->x), 0, frame->width - 1), top = within(floorf(region->y), 0, frame->height - 1);
-    const int right = within(ceilf(region->x + region->w), left + 1, frame->width);
-    const int bottom = within(ceilf(region->y + region->h), top + 1, frame->height);
+    const int left = within(ast_floorf(region->x), 0, frame->width - 1), top = within(ast_floorf(region->y), 0, frame->height - 1);
+    const int right = within(ast_ceilf(region->x + region->w), left + 1, frame->width);
+    const int bottom = within(ast_ceilf(region->y + region->h), top + 1, frame->height);
     view->origin_x = (float)left;
     view->origin_y = (float)top;
     if (size > (float)view->object) view->pixel = size / (float)view->object;
@@ -38,8 +38,8 @@ void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box 
         view->image.height = bottom - top;
         return;
     }
-    const int width = within(ceilf((float)(right - left) / view->pixel), 1, view->side);
-    const int height = within(ceilf((float)(bottom - top) / view->pixel), 1, view->side);
+    const int width = within(ast_ceilf((float)(right - left) / view->pixel), 1, view->side);
+    const int height = within(ast_ceilf((float)(bottom - top) / view->pixel), 1, view->side);
     const ast_box window = {(float)left, (float)top, (float)width * view->pixel, (float)height * view->pixel};
     ast_resampler_aim(&view->resampler, frame, &window, width, height);
     for (int r = 0; r < height; r++) {

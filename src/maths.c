@@ -1,0 +1,154 @@
+/* Reduction of the argument to a short interval, and a polynomial there. The polynomials are minimax ones, their coefficients rounded
+ * one after the other so that each makes up for the last one's rounding (what the tool Sollya calls fpminimax). */
+#include "maths.h"
+
+#include <float.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "real.h"
+
+/* ---- Single precision ---- */
+
+/* 2^k for -126 <= k <= 127. */
+static float power_of_two(int k) {
+    const uint32_t bits = (uint32_t)(k + 127) << 23;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+float ast_expf(float x) {
+    /* x = k ln 2 + r; ln 2 in two parts, the first short enough that its product with k is exact */
+    if (x != x) return x;
+    if (x < -87.336545f) return 0.0f;
+    if (x > 88.722839f) return HUGE_VALF;
+    const int k = (int)(x * 1.44269504f + (x < 0.0f ? -0.5f : 0.5f));
+    const float r = (x - (float)k * 0.693145752f) - (float)k * 1.42860677e-6f;
+    const float tail = 0.4999999f + r * (0.16666521f + r * (0.041668963f + r * (0.008368669f + r * 0.0013782458f)));
+    return (1.0f + (r + r * r * tail)) * power_of_two(k / 2) * power_of_two(k - k / 2);
+}
+
+float ast_logf(float x) {
+    /* x = 2^e (1 + f), sqrt(1/2) < 1 + f <= sqrt(2); with s = f / (2 + f), log(1 + f) = 2 s + 2 s^3 / 3 + 2 s^5 / 5 + ..
+     * = f - (f^2 / 2 - s (f^2 / 2 + rest)), where f is exact and the bracket small */
+    uint32_t bits;
+    if (x != x) return x;
+    if (x > FLT_MAX) return x;
+    if (x < FLT_MIN) x = FLT_MIN;
+    memcpy(&bits, &x, sizeof bits);
+    int e = (int)(bits >> 23) - 127;
+    float m = x * power_of_two(-e / 2) * power_of_two(-e - -e / 2);
+    if (m > 1.41421354f) {
+        m *= 0.5f;
+        e++;
+    }
+    const float f = m - 1.0f, s = f / (2.0f + f), z = s * s, half = 0.5f * f * f;
+    const float rest = z * (0.6666667f + z * (0.3999955f + z * (0.28589663f + z * 0.22576208f)));
+    return (float)e * 0.693145752f + (f - (half - (s * (half + rest) + (float)e * 1.42860677e-6f)));
+}
+
+/* The quadrant k of x = k pi / 2 + r, |r| <= pi / 4; pi / 2 in three parts, the first two short enough that products with k are exact. */
+static int quadrant(float x, float *r) {
+    const int k = (int)(x * 0.636619747f + (x < 0.0f ? -0.5f : 0.5f));
+    const float q = (float)k;
+    *r = ((x - q * 1.57067871f) - q * 1.17614865e-4f) - q * 9.92093629e-10f;
+    return k & 3;
+}
+
+static float sine_near_zero(float r) {
+    const float z = r * r;
+    return r + r * z * (-0.16666664f + z * (0.008332715f + z * -1.9583505e-4f));
+}
+static float cosine_near_zero(float r) {
+    const float z = r * r;
+    return 1.0f - (0.5f * z - z * z * (0.041666664f + z * (-0.0013888271f + z * 2.4543722e-5f)));
+}
+
+float ast_sinf(float x) {
+    float r;
+    if (!(ast_fabsf(x) <= 10000.0f)) return 0.0f;
+    const int k = quadrant(x, &r);
+    const float value = (k & 1) != 0 ? cosine_near_zero(r) : sine_near_zero(r);
+    return (k & 2) != 0 ? -value : value;
+}
+
+float ast_cosf(float x) {
+    float r;
+    if (!(ast_fabsf(x) <= 10000.0f)) return 1.0f;
+    const int k = quadrant(x, &r);
+    const float value = (k & 1) != 0 ? sine_near_zero(r) : cosine_near_zero(r);
+    return k == 1 || k == 2 ? -value : value;
+}
+
+/* (asin(s) - s) / s for s^2 = z <= 1/4. */
+static float arcsine_excess(float z) {
+    return z * (0.16666673f + z * (0.07498762f + z * (0.045020174f + z * (0.026433537f + z * 0.038328044f))));
+}
+
+float ast_acosf(float x) {
+    const float half_pi = 1.57079637f, missing = -4.37113883e-8f; /* of pi / 2 */
+    if (x >= 1.0f) return 0.0f;
+    if (x <= -1.0f) return 2.0f * half_pi;
+    if (ast_fabsf(x) <= 0.5f) return half_pi - (x - (missing - x * arcsine_excess(x * x)));
+    const float z = 0.5f * (1.0f - ast_fabsf(x)), s = ast_sqrtf(z); /* acos(x) = 2 asin(s) for x > 0 */
+    const float excess = s * arcsine_excess(z);
+    return x > 0.0f ? 2.0f * (s + excess) : 2.0f * (half_pi - (s + (excess - missing)));
+}
+
+/* ---- Double precision ---- */
+
+#if AST_REAL_IS_DOUBLE
+
+static double power_of_two_double(int k) {
+    const uint64_t bits = (uint64_t)(k + 1023) << 52;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+double ast_exp_double(double x) {
+    if (x != x) return x;
+    if (x < -708.39641853226408) return 0.0;
+    if (x > 709.78271289338397) return HUGE_VAL;
+    const int k = (int)(x * 1.4426950408889634 + (x < 0.0 ? -0.5 : 0.5));
+    const double r = (x - (double)k * 0.6931471805598903) - (double)k * 5.497923018708371e-14;
+    const double high =
+        2.480149249563551e-05 + r * (2.7557572329198064e-06 + r * (2.7630438957528254e-07 + r * 2.5004469482619634e-08));
+    const double tail =
+        0.5000000000000011 +
+        r * (0.16666666666666424 +
+             r * (0.04166666666652707 +
+                  r * (0.008333333333487052 + r * (0.0013888888944304325 + r * (0.00019841269522449025 + r * high)))));
+    return (1.0 + (r + r * r * tail)) * power_of_two_double(k / 2) * power_of_two_double(k - k / 2);
+}
+
+double ast_cos_double(double x) {
+    const double z = x * x;
+    const double high = 2.0876730385966157e-09 + z * (-1.1468399389901768e-11 + z * 4.679279490419081e-14);
+    const double tail =
+        0.041666666666666664 + z * (-0.0013888888888888278 + z * (2.480158730111952e-05 + z * (-2.75573190670572e-07 + z * high)));
+    return 1.0 - (0.5 * z - z * z * tail);
+}
+
+static double arcsine_excess_double(double z) {
+    const double high =
+        0.010350533439814569 +
+        z * (0.005343025003147791 + z * (0.017701448975080063 + z * (-0.01530603704025498 + z * 0.02905848395573076)));
+    const double middle =
+        0.022372174502858302 + z * (0.017352358601511367 + z * (0.013971691376155278 + z * (0.011474729572284697 + z * high)));
+    return z *
+           (0.16666666666666669 + z * (0.07499999999998022 + z * (0.04464285714699303 + z * (0.030381944095536736 + z * middle))));
+}
+
+double ast_acos_double(double x) {
+    const double half_pi = 1.5707963267948966, missing = 6.123233995736766e-17, size = x < 0.0 ? -x : x;
+    if (x >= 1.0) return 0.0;
+    if (x <= -1.0) return 2.0 * half_pi;
+    if (size <= 0.5) return half_pi - (x - (missing - x * arcsine_excess_double(x * x)));
+    const double z = 0.5 * (1.0 - size), s = AST_SQUARE_ROOT(z);
+    const double excess = s * arcsine_excess_double(z);
+    return x > 0.0 ? 2.0 * (s + excess) : 2.0 * (half_pi - (s + (excess - missing)));
+}
+
+#endif
