@@ -2,58 +2,63 @@
  * floating-point contraction gives the same bits on every machine. */
 #include "linalg.h"
 
-/* The product works on panels: LANES columns of a against COLS columns of b, both interleaved over DEPTH elements. The innermost
- * loops run over independent sums in contiguous memory, which compilers vectorise without reassociating any of them; summing DEPTH
- * elements at a time keeps the rounding error well below that of one long sum. */
-enum { LANES = 8, COLS = 4, DEPTH = 64 };
+#include <string.h>
+
+#include "kernels.h"
 
 static int prepare(void) {
     return 0;
 }
 
-/* Columns 0 .. used - 1 of m, interleaved width at a time; the rest of the panel repeats column 0 and is never read back. */
-static void pack(float *panel, int width, const float *m, int ld, int used, int depth) {
-    for (int l = 0; l < width; l++) {
-        const float *column = m + (size_t)(l < used ? l : 0) * (size_t)ld;
-        for (int d = 0; d < depth; d++) panel[d * width + l] = column[d];
-    }
-}
-
-static void panel_product(const float *a, const float *b, int depth, float *sum) {
-    float s[COLS][LANES] = {{0}};
-    for (int d = 0; d < depth; d++)
-        for (int q = 0; q < COLS; q++)
-            for (int l = 0; l < LANES; l++) s[q][l] += a[LANES * d + l] * b[COLS * d + q];
-    for (int q = 0; q < COLS; q++)
-        for (int l = 0; l < LANES; l++) sum[LANES * q + l] = s[q][l];
-}
-
-static int product(int rows, int cols, int depth, const float *a, int lda, const float *b, int ldb, float *c, int ldc) {
-    float panel_a[DEPTH * LANES], panel_b[DEPTH * COLS], sum[COLS * LANES];
+/* c[i * step_i + j * step_j] = a_i'b_j, the columns of a in lanes. */
+static void lanes_product(int rows, int cols, int depth, const float *a, size_t lda, const float *b, size_t ldb, float *c,
+                          size_t step_i, size_t step_j) {
+    enum { CHUNK = 24 }; /* columns whose sums are kept beside c where c cannot take whole panels */
+    const struct ast_kernels *kernels = ast_kernels();
+    AST_LANES_ALIGNED float panel[AST_PANEL_DEPTH * AST_LANES];
+    float sums[CHUNK * AST_LANES];
 
     for (int j = 0; j < cols; j++)
-        for (int i = 0; i < rows; i++) c[(size_t)j * (size_t)ldc + (size_t)i] = 0.0f;
+        for (int i = 0; i < rows; i++) c[(size_t)i * step_i + (size_t)j * step_j] = 0.0f;
 
-    for (int i = 0; i < rows; i += LANES) {
-        const int lanes = rows - i < LANES ? rows - i : LANES;
-        for (int d = 0; d < depth; d += DEPTH) {
-            const int part = depth - d < DEPTH ? depth - d : DEPTH;
-            pack(panel_a, LANES, a + (size_t)i * (size_t)lda + d, lda, lanes, part);
-            for (int j = 0; j < cols; j += COLS) {
-                const int used = cols - j < COLS ? cols - j : COLS;
-                pack(panel_b, COLS, b + (size_t)j * (size_t)ldb + d, ldb, used, part);
-                panel_product(panel_a, panel_b, part, sum);
-                for (int q = 0; q < used; q++) {
-                    float *out = c + (size_t)(j + q) * (size_t)ldc + (size_t)i;
-                    for (int l = 0; l < lanes; l++) out[l] += sum[LANES * q + l];
-                }
+    for (int i = 0; i < rows; i += AST_LANES) {
+        const int lanes = rows - i < AST_LANES ? rows - i : AST_LANES;
+        for (int d = 0; d < depth; d += AST_PANEL_DEPTH) {
+            const int part = depth - d < AST_PANEL_DEPTH ? depth - d : AST_PANEL_DEPTH;
+            kernels->pack(panel, a + (size_t)i * lda + d, lda, lanes, part);
+            if (step_i == 1 && lanes == AST_LANES) {
+                kernels->panel_product(panel, part, b + d, ldb, cols, c + i, step_j);
+                continue;
+            }
+            for (int j = 0; j < cols; j += CHUNK) {
+                const int used = cols - j < CHUNK ? cols - j : CHUNK;
+                memset(sums, 0, sizeof sums);
+                kernels->panel_product(panel, part, b + (size_t)j * ldb + d, ldb, used, sums, AST_LANES);
+                for (int q = 0; q < used; q++)
+                    for (int l = 0; l < lanes; l++)
+                        c[(size_t)(i + l) * step_i + (size_t)(j + q) * step_j] += sums[q * AST_LANES + l];
             }
         }
     }
+}
+
+/* What packing a panel costs, in columns against which it is multiplied. */
+static int panels_cost(int in_lanes, int others) {
+    enum { PACKING = 16 };
+    return (in_lanes + AST_LANES - 1) / AST_LANES * (others + PACKING);
+}
+
+/* Either operand may be in the lanes: the products commute, and the order of each sum is the same. */
+static int product(int rows, int cols, int depth, const float *a, int lda, const float *b, int ldb, float *c, int ldc) {
+    if (panels_cost(rows, cols) <= panels_cost(cols, rows))
+        lanes_product(rows, cols, depth, a, (size_t)lda, b, (size_t)ldb, c, 1, (size_t)ldc);
+    else
+        lanes_product(cols, rows, depth, b, (size_t)ldb, a, (size_t)lda, c, (size_t)ldc, 1);
     return 0;
 }
 
 static ast_real dot(const ast_real *x, const ast_real *y, int n) {
+    enum { LANES = 8 };
     ast_real sum[LANES] = {0};
     int d = 0;
     for (; d + LANES <= n; d += LANES)

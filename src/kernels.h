@@ -1,0 +1,52 @@
+/* The loops that take the time. One C source (the *_kernel.h files), compiled once for each instruction set: the best that the
+ * processor has is chosen at run time, so that a library built for any machine is fast on this one.
+ *
+ * Every kernel takes its sums in an order that its source fixes, whatever the width of a vector: all instruction sets give the same
+ * bits. */
+#ifndef AST_KERNELS_H
+#define AST_KERNELS_H
+
+#include <stddef.h>
+
+/* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
+ * AST_ONE_KERNEL to leave them out. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(AST_ONE_KERNEL)
+#define AST_X86_KERNELS 1
+#else
+#define AST_X86_KERNELS 0
+#endif
+
+/* Vectors that are worked on side by side; the element l of each is in lane l. */
+enum { AST_LANES = 16 };
+/* Elements of a panel at most. Summing so many at a time keeps the rounding error well below that of one long sum. */
+enum { AST_PANEL_DEPTH = 64 };
+
+/* For arrays of lanes outside the arena. */
+#if defined(__GNUC__)
+#define AST_LANES_ALIGNED __attribute__((aligned(64)))
+#else
+#define AST_LANES_ALIGNED
+#endif
+
+struct ast_kernels {
+    const char *name; /* of the instruction set */
+
+    /* Interleaves depth elements of used <= AST_LANES columns of m (ld floats apart): panel[d * AST_LANES + l]. Unused lanes repeat the
+     * first column. */
+    void (*pack)(float *panel, const float *m, size_t ld, int used, int depth);
+    /* sums[c * ld_sums + l] += sum over d < depth of panel[d * AST_LANES + l] * columns[c * ld + d], for c < count and every lane. */
+    void (*panel_product)(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums);
+};
+
+/* The best of this processor. */
+const struct ast_kernels *ast_kernels(void);
+/* All that this build has and this processor can run, the plain one first; NULL for an index past the last. */
+const struct ast_kernels *ast_kernels_at(int index);
+
+extern const struct ast_kernels ast_kernels_plain;
+#if AST_X86_KERNELS
+extern const struct ast_kernels ast_kernels_avx2;
+extern const struct ast_kernels ast_kernels_avx512;
+#endif
+
+#endif
