@@ -7,8 +7,8 @@ own stack is not known and not counted.
 
 A call through a pointer may reach every function whose address is taken: those in a table (a relocation from data names them)
 and the static ones that are in the object although nothing calls them directly. The library's tables give each member a
-function of the member's own name, so a call written p->member(...) is taken to reach the functions of that name only; when
-there are none, it may reach all. A frame that gcc calls "dynamic,bounded" has a known size.
+function of the member's own name, or one that ends in _ and that name, so a call written p->member(...) is taken to reach
+those only; when there are none, it may reach all. A frame that gcc calls "dynamic,bounded" has a known size.
 """
 import argparse
 import collections
@@ -21,7 +21,7 @@ NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"(?: label: "([^"]*)")?')
 FRAME = re.compile(r"(\d+) bytes \(([a-z,]+)\)")
 RELOCATION_SECTION = re.compile(r"RELOCATION RECORDS FOR \[(.*)\]")
-MEMBER_CALL = re.compile(r"(?:\w+(?:->|\.))+(\w+)\s*\(")
+MEMBER_CALL = re.compile(r"(?:[\w\]]+(?:->|\.))+(\w+)\s*\(")
 INDIRECT = "__indirect_call"
 
 
@@ -107,7 +107,7 @@ def main():
     targets = {f for f in frames if f in in_tables or (":" in f and f not in called)}
     for caller, places in indirect.items():
         for place in places:
-            named = [{f for f in targets if short(f) == member} for member in members_called(place)]
+            named = [{f for f in targets if f"_{short(f)}".endswith(f"_{member}")} for member in members_called(place)]
             calls[caller] |= set.union(*named) if named and all(named) else targets
     try:
         chains = deepest_chains(frames, calls)

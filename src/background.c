@@ -21,9 +21,11 @@ void ast_background_average(struct ast_background *b) {
         for (int z = 0; z < b->size; z++) sum += (ast_real)b->set[(size_t)z * (size_t)b->stride + (size_t)d];
         b->mean[d] = (float)(sum / b->size);
     }
+    memset(b->changed, 1, (size_t)(1 + b->size));
 }
 
 void ast_background_replace(struct ast_background *b, int slot, const float *vector) {
     for (int d = 0; d < b->dim; d++) b->mean[d] += AST_BACKGROUND_RATE * (vector[d] - b->mean[d]);
     memcpy(b->set + (size_t)slot * (size_t)b->stride, vector, (size_t)b->dim * sizeof *vector);
+    b->changed[0] = b->changed[1 + slot] = 1;
 }

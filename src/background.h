@@ -11,9 +11,10 @@
 
 struct ast_background {
     int dim, stride;
-    int size;    /* vectors; 0: the configuration has no background */
-    float *mean; /* a column */
-    float *set;  /* size columns behind it */
+    int size;               /* vectors; 0: the configuration has no background */
+    float *mean;            /* a column */
+    float *set;             /* size columns behind it */
+    unsigned char *changed; /* the bag's marks of mean and set */
 };
 
 /* A displaced box of the object's: moved by 0.4 to 1.5 times its sides in a random direction, its size varied by 5 %. */

@@ -4,6 +4,10 @@
 
 #include "vector.h"
 
+static size_t capacity_columns(const struct ast_bag *bag) {
+    return (size_t)(bag->lead + bag->capacity * (bag->n + 1));
+}
+
 void ast_bag_layout(struct ast_bag *bag, int dim, int stride, int lead, int n, int capacity, int keep_first,
                     struct ast_arena *arena) {
     bag->keep_first = keep_first && capacity > 1;
@@ -12,15 +16,21 @@ void ast_bag_layout(struct ast_bag *bag, int dim, int stride, int lead, int n, i
     bag->lead = lead;
     bag->n = n;
     bag->capacity = capacity;
-    bag->columns = ast_arena_take(arena, (size_t)stride * (size_t)(lead + capacity * (n + 1)), sizeof *bag->columns);
+    bag->columns = ast_arena_take(arena, (size_t)stride * capacity_columns(bag), sizeof *bag->columns);
     bag->rank = ast_arena_take(arena, (size_t)capacity, sizeof *bag->rank);
     bag->basis_mean = ast_arena_take(arena, (size_t)capacity * (size_t)n, sizeof *bag->basis_mean);
+    bag->changed = ast_arena_take(arena, capacity_columns(bag), sizeof *bag->changed);
     ast_bag_clear(bag);
 }
 
 void ast_bag_clear(struct ast_bag *bag) {
     bag->count = 0;
     bag->oldest = bag->keep_first;
+    ast_bag_mark(bag);
+}
+
+void ast_bag_mark(struct ast_bag *bag) {
+    if (bag->changed != NULL) memset(bag->changed, 1, capacity_columns(bag));
 }
 
 int ast_bag_columns(const struct ast_bag *bag) {
@@ -55,6 +65,7 @@ void ast_bag_add(struct ast_bag *bag, const float *mean, const float *basis, int
 
 void ast_bag_derive(struct ast_bag *bag, int slot) {
     const float *mean = ast_bag_mean(bag, slot), *basis = ast_bag_basis(bag, slot);
+    memset(bag->changed + bag->lead + slot * (bag->n + 1), 1, (size_t)(bag->n + 1));
     for (int l = 0; l < bag->n; l++)
         bag->basis_mean[slot * bag->n + l] = ast_dot(basis + (size_t)l * (size_t)bag->stride, mean, bag->dim);
 }

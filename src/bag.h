@@ -12,18 +12,21 @@ struct ast_bag {
     float *columns;
     int dim, stride; /* floats in a column, floats from one to the next */
     int lead;
-    int n;                /* basis vectors of a model */
-    int capacity;         /* k */
-    int count;            /* models held, in slots 0 .. count - 1 */
-    int keep_first;       /* slot 0 is never replaced */
-    int oldest;           /* slot of the oldest model that may be replaced */
-    int *rank;            /* capacity: basis vectors present */
-    ast_real *basis_mean; /* capacity x n: U'mu, kept because it changes only with the model */
+    int n;                  /* basis vectors of a model */
+    int capacity;           /* k */
+    int count;              /* models held, in slots 0 .. count - 1 */
+    int keep_first;         /* slot 0 is never replaced */
+    int oldest;             /* slot of the oldest model that may be replaced */
+    int *rank;              /* capacity: basis vectors present */
+    ast_real *basis_mean;   /* capacity x n: U'mu, kept because it changes only with the model */
+    unsigned char *changed; /* a mark for each column that was written since the scoring last looked */
 };
 
 void ast_bag_layout(struct ast_bag *bag, int dim, int stride, int lead, int n, int capacity, int keep_first,
                     struct ast_arena *arena);
 void ast_bag_clear(struct ast_bag *bag);
+/* Marks all columns as changed. */
+void ast_bag_mark(struct ast_bag *bag);
 /* Columns of the product: the lead and the models held. */
 int ast_bag_columns(const struct ast_bag *bag);
 float *ast_bag_basis(const struct ast_bag *bag, int slot);

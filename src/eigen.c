@@ -26,29 +26,9 @@ static void rotate(int n, ast_real *a, ast_real *vectors, int p, int q) {
     }
 }
 
-/* The eigenvalues of a 3 x 3 matrix, descending, in closed form: with q the mean of the diagonal and A = q I + p B, those of B are
- * 2 cos of the thirds of acos(det(B) / 2) (Smith, Communications of the ACM 4, 1961). Returns 0, with nothing done, where they lie too
- * close together for that: its error grows with (q / p)^3, and with the root of what rounding leaves where two are equal. */
-static int values_of_three(const ast_real *a, ast_real *values) {
-    const ast_real q = (a[0] + a[4] + a[8]) / 3;
-    const ast_real off = a[1] * a[1] + a[2] * a[2] + a[5] * a[5];
-    const ast_real on = (a[0] - q) * (a[0] - q) + (a[4] - q) * (a[4] - q) + (a[8] - q) * (a[8] - q);
-    const ast_real p = ast_sqrt((on + 2 * off) / 6);
-    if (!(p > (ast_real)0.02 * ast_fabs(q))) return 0;
-    const ast_real x = (a[0] - q) / p, y = (a[4] - q) / p, z = (a[8] - q) / p, u = a[1] / p, v = a[2] / p, w = a[5] / p;
-    const ast_real half = (x * (y * z - w * w) - u * (u * z - w * v) + v * (u * w - y * v)) / 2;
-    if (ast_fabs(half) > (ast_real)0.9999) return 0;
-    const ast_real third = ast_acos(half) / 3, c = ast_cos(third), s = ast_sqrt(3 * (1 - c * c)); /* third is in 0 .. pi / 3 */
-    values[0] = q + 2 * p * c;
-    values[2] = q - p * (c + s);
-    values[1] = 3 * q - values[0] - values[2];
-    return 1;
-}
-
 void ast_eigen_symmetric(int n, ast_real *a, ast_real *values, ast_real *vectors) {
     enum { SWEEPS = 20 }; /* convergence is quadratic: 5 or 6 are needed */
 
-    if (n == 3 && vectors == NULL && values_of_three(a, values)) return;
     for (int i = 0; vectors != NULL && i < n * n; i++) vectors[i] = i % (n + 1) == 0 ? 1 : 0;
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         int rotations = 0;

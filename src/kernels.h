@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 
+#include "real.h"
+
 /* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
  * AST_ONE_KERNEL to leave them out. */
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(AST_ONE_KERNEL)
@@ -28,6 +30,11 @@ enum { AST_PANEL_DEPTH = 64 };
 #define AST_LANES_ALIGNED
 #endif
 
+struct ast_gram;
+struct ast_gram_tile;
+struct ast_gram_model;
+
+/* Arrays of lanes hold AST_LANES numbers for each of their elements. */
 struct ast_kernels {
     const char *name; /* of the instruction set */
 
@@ -36,6 +43,21 @@ struct ast_kernels {
     void (*pack)(float *panel, const float *m, size_t ld, int used, int depth);
     /* sums[c * ld_sums + l] += sum over d < depth of panel[d * AST_LANES + l] * columns[c * ld + d], for c < count and every lane. */
     void (*panel_product)(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums);
+
+    /* vector -= origin; the squared length of what is left. */
+    ast_real (*depart)(float *vector, const float *origin, int n);
+    /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
+    void (*solve)(const float *factor, int size, float *vectors);
+    /* Lanes of symmetric eigen-problems, n x n (column-major, the triangle i <= j at i * n + j; destroyed): values (n) descending, vectors
+     * (n x n, as columns; NULL: not wanted). */
+    void (*eigen)(int n, ast_real *a, ast_real *values, ast_real *vectors);
+    /* The same without vectors, by the way that is fastest. spare: n + 1 lanes. */
+    void (*eigenvalues)(int n, ast_real *a, ast_real *values, ast_real *spare);
+
+    /* The stages of the Gram scoring for the candidates of a tile (score_gram.c). */
+    void (*project)(const struct ast_gram *s, struct ast_gram_tile *t);
+    void (*decompose)(const struct ast_gram *s, struct ast_gram_tile *t);
+    void (*pair)(const struct ast_gram *s, struct ast_gram_tile *t, const struct ast_gram_model *model, float *distance);
 };
 
 /* The best of this processor. */

@@ -4,4 +4,9 @@
 
 #include "product_kernel.h"
 
-const struct ast_kernels AST_KERNELS = {AST_KERNELS_NAME, pack, panel_product};
+#include "eigen_kernel.h"
+
+#include "score_kernel.h"
+
+const struct ast_kernels AST_KERNELS = {AST_KERNELS_NAME, pack,    panel_product, depart, solve, eigen,
+                                        eigenvalues,      project, decompose,     pair};

@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "maths_lanes.h"
 #include "real.h"
 
 /* ---- Single precision ---- */
@@ -124,31 +125,11 @@ double ast_exp_double(double x) {
 }
 
 double ast_cos_double(double x) {
-    const double z = x * x;
-    const double high = 2.0876730385966157e-09 + z * (-1.1468399389901768e-11 + z * 4.679279490419081e-14);
-    const double tail =
-        0.041666666666666664 + z * (-0.0013888888888888278 + z * (2.480158730111952e-05 + z * (-2.75573190670572e-07 + z * high)));
-    return 1.0 - (0.5 * z - z * z * tail);
-}
-
-static double arcsine_excess_double(double z) {
-    const double high =
-        0.010350533439814569 +
-        z * (0.005343025003147791 + z * (0.017701448975080063 + z * (-0.01530603704025498 + z * 0.02905848395573076)));
-    const double middle =
-        0.022372174502858302 + z * (0.017352358601511367 + z * (0.013971691376155278 + z * (0.011474729572284697 + z * high)));
-    return z *
-           (0.16666666666666669 + z * (0.07499999999998022 + z * (0.04464285714699303 + z * (0.030381944095536736 + z * middle))));
+    return ast_cos_lane(x);
 }
 
 double ast_acos_double(double x) {
-    const double half_pi = 1.5707963267948966, missing = 6.123233995736766e-17, size = x < 0.0 ? -x : x;
-    if (x >= 1.0) return 0.0;
-    if (x <= -1.0) return 2.0 * half_pi;
-    if (size <= 0.5) return half_pi - (x - (missing - x * arcsine_excess_double(x * x)));
-    const double z = 0.5 * (1.0 - size), s = AST_SQUARE_ROOT(z);
-    const double excess = s * arcsine_excess_double(z);
-    return x > 0.0 ? 2.0 * (s + excess) : 2.0 * (half_pi - (s + (excess - missing)));
+    return ast_acos_lane(x);
 }
 
 #endif

@@ -6,31 +6,15 @@
  * that does not vary, far below one that does. */
 #define ROUNDING_FLOOR ((ast_real)1e-6)
 
-void ast_metric_layout(struct ast_metric *m, int size, float ridge, int columns, int tile, struct ast_arena *arena) {
+void ast_metric_layout(struct ast_metric *m, int size, float ridge, int mean, int columns, struct ast_arena *arena) {
     const size_t b = (size_t)size;
     m->size = size;
     m->ridge = ridge;
-    m->columns = columns;
+    m->mean = mean;
     if (size == 0) return;
     m->factor = ast_arena_take(arena, b * b, sizeof *m->factor);
-    m->known = ast_arena_take(arena, b * (size_t)columns, sizeof *m->known);
-    m->fresh = ast_arena_take(arena, b * (size_t)tile, sizeof *m->fresh);
-    m->packed = ast_arena_take(arena, b * (size_t)tile, sizeof *m->packed);
-    m->correction = ast_arena_take(arena, (size_t)columns * (size_t)tile, sizeof *m->correction);
-}
-
-/* L^-1 applied to `lanes` interleaved vectors at once, in place. */
-static void solve(const struct ast_metric *m, float *vectors, int lanes) {
-    for (int r = 0; r < m->size; r++) {
-        const float *row = m->factor + (size_t)r * (size_t)m->size;
-        float *target = vectors + (size_t)r * (size_t)lanes;
-        for (int c = 0; c < r; c++) {
-            const float *from = vectors + (size_t)c * (size_t)lanes;
-            const float factor = row[c];
-            for (int l = 0; l < lanes; l++) target[l] -= factor * from[l];
-        }
-        for (int l = 0; l < lanes; l++) target[l] *= row[r];
-    }
+    m->known = ast_arena_take(arena, b * (size_t)(columns - size), sizeof *m->known);
+    m->fresh = ast_arena_take(arena, b * AST_LANES, sizeof *m->fresh);
 }
 
 /* Cholesky of a positive definite matrix (row-major, lower triangle), in place; the diagonal is left inverted. */
@@ -49,15 +33,23 @@ static void factorise(float *a, int n) {
     }
 }
 
-void ast_metric_prepare(struct ast_metric *m, const float *gram, int columns, int mean) {
-    const int b = m->size;
+/* Columns of which t is known, counted without the background's vectors; `behind` is the first behind them. */
+static int known_columns(const struct ast_metric *m, int columns) {
+    return columns - m->size;
+}
+static int behind(const struct ast_metric *m) {
+    return m->mean + 1 + m->size;
+}
+
+void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld) {
+    const int b = m->size, mean = m->mean, known = known_columns(m, columns);
     const float *mean_row = gram;
     ast_real trace = 0, total = 0;
     /* Zc Zc' from the rows of z and m_b. */
     for (int r = 0; r < b; r++) {
-        const float *row = gram + (size_t)(1 + r) * (size_t)columns;
+        const float *row = gram + (size_t)(1 + r) * (size_t)ld;
         for (int c = 0; c <= r; c++) {
-            const float *other = gram + (size_t)(1 + c) * (size_t)columns;
+            const float *other = gram + (size_t)(1 + c) * (size_t)ld;
             m->factor[(size_t)r * (size_t)b + (size_t)c] = (row[mean + 1 + c] - row[mean]) - (other[mean] - mean_row[mean]);
         }
         trace += (ast_real)m->factor[(size_t)r * (size_t)b + (size_t)r];
@@ -66,32 +58,50 @@ void ast_metric_prepare(struct ast_metric *m, const float *gram, int columns, in
     const ast_real ridge = (ast_real)m->ridge * trace, floor = ROUNDING_FLOOR * total, diagonal = ridge > floor ? ridge : floor;
     for (int r = 0; r < b; r++) m->factor[(size_t)r * (size_t)b + (size_t)r] += (float)diagonal;
     factorise(m->factor, b);
-    for (int x = 0; x < columns; x++) {
-        float *t = m->known + (size_t)x * (size_t)b;
-        for (int r = 0; r < b; r++) t[r] = gram[(size_t)(1 + r) * (size_t)columns + (size_t)x] - mean_row[x];
-        solve(m, t, 1);
+    for (int first = 0; first < known; first += AST_LANES) {
+        const int used = known - first < AST_LANES ? known - first : AST_LANES;
+        for (int l = 0; l < AST_LANES; l++) {
+            const int k = first + (l < used ? l : 0), x = k <= mean ? k : k + b;
+            for (int r = 0; r < b; r++)
+                m->fresh[(size_t)r * AST_LANES + (size_t)l] = gram[(size_t)(1 + r) * (size_t)ld + (size_t)x] - mean_row[x];
+        }
+        kernels->solve(m->factor, b, m->fresh);
+        for (int l = 0; l < used; l++)
+            for (int r = 0; r < b; r++)
+                m->known[(size_t)(first + l) * (size_t)b + (size_t)r] = m->fresh[(size_t)r * AST_LANES + (size_t)l];
     }
 }
 
-int ast_metric_apply(struct ast_metric *m, const struct ast_linalg *la, int columns, int mean, float *inner, int count,
-                     ast_real *square) {
-    for (int i = 0; i < count; i++) {
-        const float *row = inner + (size_t)i * (size_t)columns;
-        for (int r = 0; r < m->size; r++) m->fresh[(size_t)r * (size_t)count + (size_t)i] = row[mean + 1 + r] - row[mean];
+void ast_metric_apply(struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square) {
+    const int b = m->size, in_front = m->mean + 1;
+    const float *mean = inner + (size_t)m->mean * AST_LANES, *vectors = mean + AST_LANES;
+    for (int r = 0; r < b; r++)
+        for (int l = 0; l < AST_LANES; l++)
+            m->fresh[(size_t)r * AST_LANES + (size_t)l] = vectors[(size_t)r * AST_LANES + (size_t)l] - mean[l];
+    kernels->solve(m->factor, b, m->fresh);
+    for (int r = 0; r < b; r++) {
+        float *t = m->fresh + (size_t)r * AST_LANES;
+        for (int l = 0; l < AST_LANES; l++) {
+            square[l] -= (ast_real)t[l] * (ast_real)t[l];
+            t[l] = -t[l]; /* so that the products are subtracted */
+        }
     }
-    solve(m, m->fresh, count);
-    for (int i = 0; i < count; i++) {
-        float *t = m->packed + (size_t)i * (size_t)m->size;
-        for (int r = 0; r < m->size; r++) t[r] = m->fresh[(size_t)r * (size_t)count + (size_t)i];
-        square[i] -= ast_dot(t, t, m->size);
-        if (square[i] < 0) square[i] = 0;
+    for (int l = 0; l < AST_LANES; l++)
+        if (square[l] < 0) square[l] = 0;
+    for (int r = 0; r < b; r += AST_PANEL_DEPTH) {
+        const int depth = b - r < AST_PANEL_DEPTH ? b - r : AST_PANEL_DEPTH;
+        const float *panel = m->fresh + (size_t)r * AST_LANES, *known = m->known + r;
+        kernels->panel_product(panel, depth, known, (size_t)b, in_front, inner, AST_LANES);
+        if (columns > behind(m))
+            kernels->panel_product(panel, depth, known + (size_t)in_front * (size_t)b, (size_t)b, columns - behind(m),
+                                   inner + (size_t)behind(m) * AST_LANES, AST_LANES);
     }
-    const int failed = la->product(columns, count, m->size, m->known, m->size, m->packed, m->size, m->correction, columns);
-    if (failed) return failed;
-    for (int i = 0; i < count * columns; i++) inner[i] -= m->correction[i];
-    return 0;
+}
+
+float *ast_metric_known(const struct ast_metric *m, int column) {
+    return m->known + (size_t)(column <= m->mean ? column : column - m->size) * (size_t)m->size;
 }
 
 ast_real ast_metric_correction(const struct ast_metric *m, int x, int y) {
-    return ast_dot(m->known + (size_t)x * (size_t)m->size, m->known + (size_t)y * (size_t)m->size, m->size);
+    return ast_dot(ast_metric_known(m, x), ast_metric_known(m, y), m->size);
 }

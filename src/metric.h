@@ -10,28 +10,27 @@
 
 #include "arena.h"
 #include "asttrack.h"
-#include "linalg.h"
+#include "kernels.h"
+#include "real.h"
 
 struct ast_metric {
-    int size;    /* background vectors; 0: the identity */
-    int columns; /* capacity of the columns' corrections */
+    int size; /* background vectors; 0: the identity */
+    int mean; /* column of m_b, which they follow */
     float ridge;
-    float *factor;     /* L, row-major, its diagonal inverted: size x size */
-    float *known;      /* t of each column: size floats a column */
-    float *fresh;      /* t of a tile, interleaved: size x tile */
-    float *packed;     /* the same, one after the other */
-    float *correction; /* known' packed: columns x tile */
+    float *factor; /* L, row-major, its diagonal inverted: size x size */
+    float *known;  /* t of every column but theirs: size floats a column */
+    float *fresh;  /* lanes of t: size */
 };
 
-/* size vectors at most; columns of the product; tile vectors at a time. */
-void ast_metric_layout(struct ast_metric *m, int size, float ridge, int columns, int tile, struct ast_arena *arena);
-/* gram: inner products of [m_b, z_1 .. z_size] with all columns, one row of `columns` floats each; mean is the index of m_b among the
- * columns, the vectors follow it. Factorises, and finds t of every column. */
-void ast_metric_prepare(struct ast_metric *m, const float *gram, int columns, int mean);
-/* Turns inner products of count <= tile vectors with all columns (count rows) into M's, and their squared norms too. */
-int ast_metric_apply(struct ast_metric *m, const struct ast_linalg *la, int columns, int mean, float *inner, int count,
-                     ast_real *square);
-/* t(x)'t(y) for two columns. */
+/* size vectors at most, which follow column `mean`; columns of the product in all. */
+void ast_metric_layout(struct ast_metric *m, int size, float ridge, int mean, int columns, struct ast_arena *arena);
+/* gram: inner products of [m_b, z_1 .. z_size] with the columns, one row of ld floats each. Factorises, and finds t of the columns. */
+void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld);
+/* Turns inner products with the columns (lanes) into M's, but for those with the background's vectors, and lanes of squared norms too. */
+void ast_metric_apply(struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square);
+/* t of a column that is none of the background's vectors. */
+float *ast_metric_known(const struct ast_metric *m, int column);
+/* t(x)'t(y) for two of them. */
 ast_real ast_metric_correction(const struct ast_metric *m, int x, int y);
 
 #endif

@@ -13,11 +13,15 @@
  *
  * So one product of the patches d with the columns [reference Q U_1 mu_1 .. U_k mu_k] holds everything, and because d is a small
  * difference, single precision is enough for it. Unlike the Gram matrix of the set, the history enters through its own singular
- * values, not through their squares minus rounding. */
+ * values, not through their squares minus rounding.
+ *
+ * Candidates are taken AST_LANES at a time, one in each lane (score_kernel.h): what is done here for one is done there for all. What
+ * has not changed since the last frame is not computed again: inner products of the background with itself and with the models. */
 #include <stddef.h>
+#include <string.h>
 
-#include "distance.h"
 #include "eigen.h"
+#include "product.h"
 #include "score.h"
 #include "subspace.h"
 #include "vector.h"
@@ -36,28 +40,47 @@ static int lead(const ast_config *cfg) {
     return background_mean(cfg) + (cfg->background > 0 ? 1 + cfg->background : 0);
 }
 
+static void tile_layout(struct ast_gram_tile *t, const ast_config *cfg, size_t columns, struct ast_arena *arena) {
+    const size_t p = (size_t)cfg->history, m = p + 1, n = (size_t)cfg->basis_size;
+    t->inner = ast_arena_take(arena, columns * AST_LANES, sizeof *t->inner);
+    t->beside_buffer = cfg->background > 0 ? NULL : ast_arena_take(arena, columns * AST_LANES, sizeof *t->beside_buffer);
+    t->square = ast_arena_take(arena, AST_LANES, sizeof *t->square);
+    t->length = ast_arena_take(arena, AST_LANES, sizeof *t->length);
+    t->apart = ast_arena_take(arena, AST_LANES, sizeof *t->apart);
+    t->background = ast_arena_take(arena, AST_LANES, sizeof *t->background);
+    t->q = ast_arena_take(arena, p * AST_LANES, sizeof *t->q);
+    t->rest = ast_arena_take(arena, AST_LANES, sizeof *t->rest);
+    t->rho = ast_arena_take(arena, AST_LANES, sizeof *t->rho);
+    t->matrix = ast_arena_take(arena, m * m * AST_LANES, sizeof *t->matrix);
+    t->values = ast_arena_take(arena, (m > n ? m : n) * AST_LANES, sizeof *t->values);
+    t->vectors = ast_arena_take(arena, m * m * AST_LANES, sizeof *t->vectors);
+    t->absent = ast_arena_take(arena, n * AST_LANES, sizeof *t->absent);
+    t->constant = ast_arena_take(arena, n * AST_LANES, sizeof *t->constant);
+    t->cross = ast_arena_take(arena, n * n * AST_LANES, sizeof *t->cross);
+    t->small = ast_arena_take(arena, n * n * AST_LANES, sizeof *t->small);
+    t->spare = ast_arena_take(arena, (n + 1) * AST_LANES, sizeof *t->spare);
+}
+
 static void layout(union ast_scratch *scratch, const ast_config *cfg, const struct ast_linalg *la, int dim,
                    struct ast_arena *arena) {
     struct ast_gram *s = &scratch->gram;
     (void)la;
-    const size_t p = (size_t)cfg->history, m = p + 1, n = (size_t)cfg->basis_size;
-    const size_t k = (size_t)cfg->bag_size, in_front = (size_t)lead(cfg), columns = in_front + k * (n + 1);
+    const size_t p = (size_t)cfg->history, n = (size_t)cfg->basis_size, k = (size_t)cfg->bag_size;
     s->dim = dim;
+    s->size = cfg->basis_size;
+    s->columns = (size_t)lead(cfg) + k * (n + 1);
     s->spectrum = ast_arena_take(arena, p, sizeof *s->spectrum);
     s->offset = ast_arena_take(arena, p, sizeof *s->offset);
+    s->matrix = ast_arena_take(arena, p * p, sizeof *s->matrix);
+    s->vectors = ast_arena_take(arena, p * p, sizeof *s->vectors);
+    s->values = ast_arena_take(arena, p, sizeof *s->values);
     s->gap_square = ast_arena_take(arena, k, sizeof *s->gap_square);
     s->basis_gap = ast_arena_take(arena, k * n, sizeof *s->basis_gap);
     s->factor = ast_arena_take(arena, k * n * n, sizeof *s->factor);
-    s->square = ast_arena_take(arena, AST_TILE, sizeof *s->square);
-    ast_metric_layout(&s->metric, cfg->background, cfg->ridge, (int)columns, AST_TILE, arena);
-    s->inner = ast_arena_take(arena, columns * AST_TILE, sizeof *s->inner);
-    s->shared = ast_arena_take(arena, columns * in_front, sizeof *s->shared);
-    s->basis_cross = ast_arena_take(arena, m * n, sizeof *s->basis_cross);
-    s->matrix = ast_arena_take(arena, m * m, sizeof *s->matrix);
-    s->vectors = ast_arena_take(arena, m * m, sizeof *s->vectors);
-    s->values = ast_arena_take(arena, m, sizeof *s->values);
-    s->cross = ast_arena_take(arena, n * n, sizeof *s->cross);
-    s->small = ast_arena_take(arena, n * n, sizeof *s->small);
+    ast_metric_layout(&s->metric, cfg->background, cfg->ridge, background_mean(cfg), (int)s->columns, arena);
+    s->shared = ast_arena_take(arena, s->columns * (p + 1), sizeof *s->shared);
+    if (cfg->background > 0) s->kept = ast_arena_take(arena, s->columns * (1 + (size_t)cfg->background), sizeof *s->kept);
+    tile_layout(&s->tile, cfg, s->columns, arena);
 }
 
 static const float *lead_column(const struct ast_bag *bag, int column) {
@@ -116,6 +139,7 @@ static void combine(const ast_real *matrix, int rank, float *numbers, size_t ste
 /* Makes Q orthonormal in the metric: with Q S the history about its origin and S Q'MQ S = W diag(lambda) W', the new basis is
  * Q S W lambda^(-1/2), and lambda the new spectrum. */
 static void adapt_history(struct ast_gram *s, const struct ast_scene *scene, int columns) {
+    const size_t ld = s->columns;
     struct ast_bag *bag = scene->bag;
     const int r = s->rank;
     ast_real *matrix = s->matrix, *vectors = s->vectors;
@@ -132,14 +156,13 @@ static void adapt_history(struct ast_gram *s, const struct ast_scene *scene, int
     }
     for (int d = 0; d < s->dim; d++)
         combine(vectors, r, bag->columns + (size_t)Q_FIRST * (size_t)bag->stride + d, (size_t)bag->stride);
-    for (int x = 0; x < columns; x++) combine(vectors, r, s->shared + (size_t)Q_FIRST * (size_t)columns + x, (size_t)columns);
-    for (int b = 0; b < s->metric.size; b++)
-        combine(vectors, r, s->metric.known + (size_t)Q_FIRST * (size_t)s->metric.size + b, (size_t)s->metric.size);
+    for (int x = 0; x < columns; x++) combine(vectors, r, s->shared + Q_FIRST * ld + x, ld);
+    for (int b = 0; b < s->metric.size; b++) combine(vectors, r, ast_metric_known(&s->metric, Q_FIRST) + b, (size_t)s->metric.size);
 
     /* reference - origin in the new basis: both inner products in the metric. */
     const int mean = background_mean(scene->cfg);
     for (int l = 0; l < r; l++) {
-        const float *row = s->shared + (size_t)(Q_FIRST + l) * (size_t)columns;
+        const float *row = s->shared + (size_t)(Q_FIRST + l) * ld;
         offset[l] = ((ast_real)row[REFERENCE] - ast_metric_correction(&s->metric, Q_FIRST + l, REFERENCE)) -
                     ((ast_real)row[mean] - ast_metric_correction(&s->metric, Q_FIRST + l, mean));
         s->offset[l] = scene->cfg->basis == AST_BASIS_CENTRED ? 0 : offset[l];
@@ -172,26 +195,60 @@ static void factorise_model(struct ast_gram *s, const struct ast_bag *bag, int s
     }
 }
 
+/* One column's inner products with all, found in lane l of products. */
+static void keep_products(struct ast_gram *s, const struct ast_scene *scene, int column, int columns, const float *products,
+                          int l) {
+    const int mean = background_mean(scene->cfg);
+    float *row = NULL;
+    if (column < mean)
+        row = s->shared + (size_t)column * s->columns;
+    else if (column < scene->bag->lead)
+        row = s->kept + (size_t)(column - mean) * s->columns;
+    for (int x = 0; row != NULL && x < columns; x++) row[x] = products[x * AST_LANES + l];
+    for (int z = mean; z < scene->bag->lead; z++)
+        s->kept[(size_t)(z - mean) * s->columns + (size_t)column] = products[z * AST_LANES + l];
+}
+
+/* Inner products of reference and Q, which change every frame, with all columns; and those of the background with all columns, where
+ * one of the two was changed. By the library's own product whatever the backend, whose bits do not depend on what else is computed with
+ * it: a restored tracker, which computes all anew, finds the same. */
+static void update_products(struct ast_gram *s, const struct ast_scene *scene, int columns) {
+    struct ast_bag *bag = scene->bag;
+    const int always = background_mean(scene->cfg);
+    int column[AST_TILE], waiting = 0;
+    for (int x = 0; x < columns; x++) {
+        if (x < always || (scene->background > 0 && bag->changed[x])) column[waiting++] = x;
+        if (waiting < AST_TILE && x + 1 < columns) continue;
+        for (int l = 0; l < waiting; l++)
+            memcpy(scene->spare + (size_t)l * (size_t)bag->stride, lead_column(bag, column[l]), (size_t)s->dim * sizeof(float));
+        ast_product(waiting, columns, s->dim, scene->spare, bag->stride, bag->columns, bag->stride, s->tile.inner, AST_LANES);
+        for (int l = 0; l < waiting; l++) keep_products(s, scene, column[l], columns, s->tile.inner, l);
+        waiting = 0;
+    }
+    memset(bag->changed, 0, (size_t)columns);
+}
+
 static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
     struct ast_gram *s = &scratch->gram;
     struct ast_bag *bag = scene->bag;
-    const int columns = ast_bag_columns(bag), mean = background_mean(scene->cfg), n = bag->n;
+    const int columns = ast_bag_columns(bag), mean = background_mean(scene->cfg), n = bag->n, p = scene->history->count;
+    const size_t ld = s->columns;
     const float *reference = bag->columns;
-    int failed = decompose_history(s, scene);
-    if (!failed)
-        failed = scene->la->product(columns, bag->lead, s->dim, bag->columns, bag->stride, bag->columns, bag->stride, s->shared,
-                                    columns);
+    const int failed = decompose_history(s, scene);
     if (failed) return failed;
+    s->share = 1 / (ast_real)(p + 1);
+    s->gamma = scene->cfg->basis == AST_BASIS_CENTRED ? (ast_real)p / (p + 1) : 1;
+    s->alpha = scene->cfg->model == AST_MODEL_LINEAR ? -1 : (ast_real)scene->cfg->alpha;
+    update_products(s, scene, columns);
 
     const int adapted = scene->background > 0;
     if (adapted) {
-        ast_metric_prepare(&s->metric, s->shared + (size_t)mean * (size_t)columns, columns, mean);
+        ast_metric_prepare(&s->metric, scene->kernels, s->kept, columns, (int)ld);
         adapt_history(s, scene, columns);
         for (int row = 0; row < Q_FIRST + s->rank; row++)
-            for (int x = 0; x < columns; x++)
-                s->shared[(size_t)row * (size_t)columns + (size_t)x] -= (float)ast_metric_correction(&s->metric, row, x);
-        const ast_real m_b_square =
-            (ast_real)s->shared[(size_t)mean * (size_t)columns + (size_t)mean] - ast_metric_correction(&s->metric, mean, mean);
+            for (int x = 0; x < columns; x = x == mean ? bag->lead : x + 1)
+                s->shared[(size_t)row * ld + (size_t)x] -= (float)ast_metric_correction(&s->metric, row, x);
+        const ast_real m_b_square = (ast_real)s->kept[mean] - ast_metric_correction(&s->metric, mean, mean);
         s->origin_square = (ast_real)s->shared[REFERENCE] - 2 * (ast_real)s->shared[mean] + m_b_square;
     }
     for (int j = 0; j < bag->count; j++) {
@@ -211,8 +268,7 @@ static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
                    ast_metric_correction(&s->metric, REFERENCE, REFERENCE);
             const ast_real *factor = model_factor(s, bag, j);
             factorise_model(s, bag, j);
-            for (int row = 0; row < Q_FIRST + s->rank; row++)
-                orthonormalise(factor, n, rank, s->shared + (size_t)row * (size_t)columns + first);
+            for (int row = 0; row < Q_FIRST + s->rank; row++) orthonormalise(factor, n, rank, s->shared + (size_t)row * ld + first);
             orthonormalise(factor, n, rank, along);
         }
         s->gap_square[j] = sum > 0 ? sum : 0;
@@ -221,198 +277,89 @@ static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
     return 0;
 }
 
-/* A candidate, as the inner products that its distances need. */
-struct candidate {
-    const float *inner; /* d'columns */
-    ast_real square;    /* |d|^2 */
-    ast_real length;    /* the same before the metric: what rounding is relative to */
-    ast_real rho;       /* length of what Q does not explain of d; 0 when that is nothing */
-    ast_real q[AST_MAX_HISTORY];
-    const ast_real *residual; /* d - Q q where e's inner products must be computed from it; else NULL */
-    int dims;                 /* coordinates: r, and one more when rho > 0 */
-    int rank;                 /* directions of U_i present */
-};
-
-/* Subtracts from d what Q explains of it, twice, since Q is orthonormal to single precision only; q receives the coordinates. Returns
- * the squared length of what is left. */
-static ast_real residual_of(const struct ast_gram *s, const struct ast_bag *bag, const float *d, ast_real *residual, ast_real *q) {
+/* Replaces d by what Q does not explain of it, taken away twice, since Q is orthonormal to single precision only; the lane's q receives the
+ * coordinates. Returns the squared length of what is left. */
+static ast_real residual_of(const struct ast_gram *s, const struct ast_scene *scene, float *d, ast_real *q) {
     enum { PASSES = 2 };
-    ast_real rest = 0;
+    ast_real *residual = scene->work, rest = 0;
     for (int i = 0; i < s->dim; i++) residual[i] = (ast_real)d[i];
-    for (int l = 0; l < s->rank; l++) q[l] = 0;
+    for (int l = 0; l < s->rank; l++) q[l * AST_LANES] = 0;
     for (int pass = 0; pass < PASSES; pass++) {
         for (int l = 0; l < s->rank; l++) {
-            const float *column = lead_column(bag, Q_FIRST + l);
+            const float *column = lead_column(scene->bag, Q_FIRST + l);
             ast_real along = 0;
             for (int i = 0; i < s->dim; i++) along += residual[i] * (ast_real)column[i];
             for (int i = 0; i < s->dim; i++) residual[i] -= along * (ast_real)column[i];
-            q[l] += along;
+            q[l * AST_LANES] += along;
         }
     }
-    for (int i = 0; i < s->dim; i++) rest += residual[i] * residual[i];
+    for (int i = 0; i < s->dim; i++) {
+        rest += residual[i] * residual[i];
+        d[i] = (float)residual[i];
+    }
     return rest;
 }
 
-/* Splits d into its part in Q and the rest. */
-static void project(const struct ast_gram *s, const struct ast_scene *scene, const float *d, struct candidate *c) {
-    const struct ast_bag *bag = scene->bag;
-    ast_real *residual = scene->work;
-    ast_real explained = 0;
-    for (int l = 0; l < s->rank; l++) {
-        c->q[l] = (ast_real)c->inner[1 + l];
-        explained += c->q[l] * c->q[l];
+/* Sets the lanes apart whose inner products with e must be computed from the residual itself. */
+static void set_apart(const struct ast_gram *s, const struct ast_scene *scene, struct ast_gram_tile *t, float *patches, int count,
+                      int columns) {
+    t->beside = t->inner;
+    for (int i = 0; i < count; i++) {
+        if (!(t->rest[i] < RESIDUAL_TOLERANCE * t->square[i])) continue;
+        if (t->beside == t->inner) memcpy(t->beside_buffer, t->inner, (size_t)columns * AST_LANES * sizeof *t->inner);
+        t->beside = t->beside_buffer;
+        float *residual = patches + (size_t)i * (size_t)scene->bag->stride;
+        t->apart[i] = 1;
+        t->rest[i] = residual_of(s, scene, residual, t->q + i);
+        for (int x = 0; x < columns; x = x == REFERENCE ? scene->bag->lead : x + 1)
+            t->beside_buffer[(size_t)x * AST_LANES + (size_t)i] = (float)ast_dot(residual, lead_column(scene->bag, x), s->dim);
     }
-    c->residual = NULL;
-    ast_real rest = c->square - explained;
-    if (scene->background > 0) {
-        /* Inner products corrected for the metric carry single precision's rounding: below it there is no direction to speak of. */
-        if (rest < (ast_real)1e-6 * c->length) rest = 0;
-    } else if (rest < RESIDUAL_TOLERANCE * c->square) {
-        rest = residual_of(s, bag, d, residual, c->q);
-        c->residual = residual;
-    }
-    /* What is left of a patch that lies in Q is Q's own rounding: no direction. */
-    const ast_real noise = (ast_real)FLT_EPSILON;
-    c->rho = rest > noise * noise * (c->square + s->reference_square) ? ast_sqrt(rest) : 0;
-    c->dims = s->rank + (c->rho > 0);
 }
 
-/* Eigenvectors (in s->vectors, descending) of the set's scatter matrix, and the rank of its basis. */
-static void decompose(struct ast_gram *s, const struct ast_scene *scene, struct candidate *c) {
-    const int p = scene->history->count, dims = c->dims;
-    const ast_real gamma = scene->cfg->basis == AST_BASIS_CENTRED ? (ast_real)p / (p + 1) : 1;
-    ast_real v[AST_MAX_HISTORY + 1] = {0};
-    for (int l = 0; l < s->rank; l++) v[l] = c->q[l] + s->offset[l];
-    if (dims > s->rank) v[s->rank] = c->rho;
-    for (int j = 0; j < dims; j++)
-        for (int i = 0; i < dims; i++) s->matrix[j * dims + i] = gamma * v[i] * v[j] + (i == j && i < s->rank ? s->spectrum[i] : 0);
-    ast_eigen_symmetric(dims, s->matrix, s->values, s->vectors);
-
-    const ast_real patch_square = c->square + 2 * (ast_real)c->inner[0] + s->reference_square;
-    const ast_real norm = ast_sqrt(s->history_square + (patch_square > 0 ? patch_square : 0));
-    for (int l = 0; l < dims; l++) s->values[l] = s->values[l] > 0 ? ast_sqrt(s->values[l]) : 0;
-    c->rank = ast_rank(s->values, dims, scene->cfg->basis_size, norm);
-}
-
-/* e'x for a column of the bag, given d'x and Q'x. */
-static ast_real residual_product(const struct ast_gram *s, const struct ast_bag *bag, const struct candidate *c, int column) {
-    const float *along_q = s->shared + column; /* Q_l'x at (1 + l) * columns */
-    const size_t columns = (size_t)ast_bag_columns(bag);
-    ast_real sum = 0;
-    if (c->residual != NULL) {
-        const float *x = lead_column(bag, column);
-        for (int d = 0; d < s->dim; d++) sum += c->residual[d] * (ast_real)x[d];
-        return sum / c->rho;
+/* In the learned metric: what rounding leaves is no direction, and what is far from the background's mean m_b is the likelier to be the
+ * object. */
+static void meet_background(const struct ast_gram *s, const struct ast_scene *scene, struct ast_gram_tile *t) {
+    const float *reference = t->inner, *mean = t->inner + (size_t)background_mean(scene->cfg) * AST_LANES;
+    t->beside = t->inner;
+    for (int i = 0; i < AST_LANES; i++) {
+        if (t->rest[i] < (ast_real)1e-6 * t->length[i]) t->rest[i] = 0;
+        const ast_real d_origin = (ast_real)reference[i] - (ast_real)mean[i];
+        const ast_real from_background = s->origin_square + 2 * s->share * d_origin + s->share * s->share * t->square[i];
+        t->background[i] = 2 * (ast_real)scene->cfg->background_ratio * from_background;
     }
-    sum = (ast_real)c->inner[column];
-    for (int l = 0; l < s->rank; l++) sum -= c->q[l] * (ast_real)along_q[(size_t)(1 + l) * columns];
-    return sum / c->rho;
-}
-
-static ast_real geodesic(struct ast_gram *s, const struct ast_bag *bag, const struct candidate *c, int other) {
-    ast_real cosines[AST_MAX_BASIS], angles[AST_MAX_BASIS];
-    const int rank = c->rank;
-    /* U_i'U_j = W' [Q e]'U_j */
-    for (int b = 0; b < other; b++) {
-        for (int a = 0; a < rank; a++) {
-            ast_real sum = 0;
-            for (int l = 0; l < c->dims; l++) sum += s->vectors[a * c->dims + l] * s->basis_cross[b * c->dims + l];
-            s->cross[b * rank + a] = sum;
-        }
-    }
-    /* Its singular values: square roots of the eigenvalues of the smaller Gram matrix. */
-    const int size = rank < other ? rank : other;
-    for (int y = 0; y < size; y++) {
-        for (int x = 0; x <= y; x++) {
-            ast_real sum = 0;
-            if (other <= rank)
-                for (int a = 0; a < rank; a++) sum += s->cross[x * rank + a] * s->cross[y * rank + a];
-            else
-                for (int b = 0; b < other; b++) sum += s->cross[b * rank + x] * s->cross[b * rank + y];
-            s->small[y * size + x] = s->small[x * size + y] = sum;
-        }
-    }
-    ast_eigen_symmetric(size, s->small, cosines, NULL);
-    for (int l = 0; l < size; l++) cosines[l] = cosines[l] > 0 ? ast_sqrt(cosines[l]) : 0;
-    ast_principal_angles(cosines, rank, other, bag->n, angles);
-    return ast_geodesic(angles, bag->n);
-}
-
-static ast_real distance_to(struct ast_gram *s, const struct ast_scene *scene, const struct candidate *c, int slot) {
-    const struct ast_bag *bag = scene->bag;
-    const int first = bag->lead + slot * (bag->n + 1), mean = first + bag->n, other = bag->rank[slot];
-    const size_t columns = (size_t)ast_bag_columns(bag);
-    for (int b = 0; b < other; b++) {
-        for (int l = 0; l < s->rank; l++)
-            s->basis_cross[b * c->dims + l] = (ast_real)s->shared[(size_t)(1 + l) * columns + (size_t)(first + b)];
-        if (c->dims > s->rank) s->basis_cross[b * c->dims + s->rank] = residual_product(s, bag, c, first + b);
-    }
-    ast_real total = geodesic(s, bag, c, other);
-    if (scene->cfg->model == AST_MODEL_LINEAR) return total;
-
-    /* difference = mu_i - mu_j = share d - g, g = mu_j - reference */
-    const ast_real share = 1 / (ast_real)(scene->history->count + 1);
-    const ast_real d_g = (ast_real)c->inner[mean] - (ast_real)c->inner[0];
-    ast_real square = share * share * c->square - 2 * share * d_g + s->gap_square[slot];
-    if (square < 0) square = 0;
-
-    ast_real along[AST_MAX_HISTORY + 1]; /* [Q e]'difference */
-    for (int l = 0; l < s->rank; l++) {
-        const float *q_column = s->shared + (size_t)(1 + l) * columns;
-        along[l] = share * c->q[l] - ((ast_real)q_column[mean] - (ast_real)q_column[0]);
-    }
-    if (c->dims > s->rank) along[s->rank] = share * c->rho - (residual_product(s, bag, c, mean) - residual_product(s, bag, c, 0));
-
-    ast_real along_candidate[AST_MAX_BASIS], along_model[AST_MAX_BASIS];
-    for (int a = 0; a < c->rank; a++) {
-        along_candidate[a] = 0;
-        for (int l = 0; l < c->dims; l++) along_candidate[a] += s->vectors[a * c->dims + l] * along[l];
-    }
-    for (int b = 0; b < other; b++) along_model[b] = share * (ast_real)c->inner[first + b] - s->basis_gap[slot * bag->n + b];
-    ast_real mean_term = ast_mahalanobis(square, along_candidate, c->rank, along_model, other);
-    if (scene->background > 0) {
-        /* The likelihood ratio of object to background: what is far from the background's mean m_b is the likelier to be the object. */
-        const ast_real d_origin = (ast_real)c->inner[REFERENCE] - (ast_real)c->inner[background_mean(scene->cfg)];
-        const ast_real from_background = s->origin_square + 2 * share * d_origin + share * share * c->square;
-        mean_term -= 2 * (ast_real)scene->cfg->background_ratio * from_background;
-    }
-    return total + (ast_real)scene->cfg->alpha * mean_term;
 }
 
 static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float *patches, int count, float *distance) {
+    const struct ast_kernels *kernels = scene->kernels;
     struct ast_gram *s = &scratch->gram;
-    struct ast_bag *bag = scene->bag;
-    const int columns = ast_bag_columns(bag);
-    const float *reference = bag->columns;
-    ast_real length[AST_TILE];
-    for (int i = 0; i < count; i++) {
-        float *d = patches + (size_t)i * (size_t)bag->stride;
-        for (int p = 0; p < s->dim; p++) d[p] -= reference[p];
+    struct ast_gram_tile *t = &s->tile;
+    const struct ast_bag *bag = scene->bag;
+    const int columns = ast_bag_columns(bag), n = bag->n;
+    for (int i = 0; i < AST_LANES; i++) {
+        t->square[i] = i < count ? kernels->depart(patches + (size_t)i * (size_t)bag->stride, bag->columns, s->dim) : 0;
+        t->length[i] = t->square[i];
+        t->apart[i] = t->background[i] = 0;
     }
+    if (count < AST_LANES) memset(t->inner, 0, (size_t)columns * AST_LANES * sizeof *t->inner);
     const int failed =
-        scene->la->product(columns, count, s->dim, bag->columns, bag->stride, patches, bag->stride, s->inner, columns);
+        scene->la->product(count, columns, s->dim, patches, bag->stride, bag->columns, bag->stride, t->inner, AST_LANES);
     if (failed) return failed;
-    for (int i = 0; i < count; i++) {
-        const float *d = patches + (size_t)i * (size_t)bag->stride;
-        s->square[i] = length[i] = ast_dot(d, d, s->dim);
-    }
-    if (scene->background > 0) {
-        const int mean = background_mean(scene->cfg);
-        const int refused = ast_metric_apply(&s->metric, scene->la, columns, mean, s->inner, count, s->square);
-        if (refused) return refused;
-        for (int i = 0; i < count; i++) {
-            for (int j = 0; j < bag->count; j++) {
-                const int first = bag->lead + j * (bag->n + 1);
-                orthonormalise(model_factor(s, bag, j), bag->n, bag->rank[j], s->inner + (size_t)i * (size_t)columns + first);
-            }
-        }
-    }
-    for (int i = 0; i < count; i++) {
-        struct candidate c = {.inner = s->inner + (size_t)i * (size_t)columns, .square = s->square[i], .length = length[i]};
-        project(s, scene, patches + (size_t)i * (size_t)bag->stride, &c);
-        decompose(s, scene, &c);
-        for (int j = 0; j < bag->count; j++)
-            distance[(size_t)i * (size_t)bag->count + (size_t)j] = (float)distance_to(s, scene, &c, j);
+    if (scene->background > 0) ast_metric_apply(&s->metric, scene->kernels, columns, t->inner, t->square);
+    kernels->project(s, t);
+    if (scene->background > 0)
+        meet_background(s, scene, t);
+    else
+        set_apart(s, scene, t, patches, count, columns);
+    kernels->decompose(s, t);
+    for (int j = 0; j < bag->count; j++) {
+        const struct ast_gram_model model = {.first = bag->lead + j * (n + 1),
+                                             .rank = bag->rank[j],
+                                             .factor = scene->background > 0 ? model_factor(s, bag, j) : NULL,
+                                             .basis_gap = s->basis_gap + j * n,
+                                             .gap_square = s->gap_square[j]};
+        float to_model[AST_LANES];
+        kernels->pair(s, t, &model, to_model);
+        for (int i = 0; i < count; i++) distance[(size_t)i * (size_t)bag->count + (size_t)j] = to_model[i];
     }
     return 0;
 }

@@ -215,6 +215,7 @@ int ast_restore(ast_tracker *t, const void *buffer, size_t size) {
     visit_state(&check, t);
     if (check.bad || check.at != total - CHECKSUM) return AST_E_CORRUPT;
     visit_state(&c, t);
+    ast_bag_mark(&t->bag);
     t->started = 1;
     t->models = 0;
     return AST_OK;

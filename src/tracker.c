@@ -27,6 +27,7 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     memset(t, 0, sizeof *t);
     t->cfg = *cfg;
     t->la = la;
+    t->kernels = ast_kernels();
     t->scoring = ast_scoring_of(cfg);
     t->dim = ast_features_length(cfg);
     t->stride = (t->dim + FLOATS - 1) / FLOATS * FLOATS;
@@ -41,6 +42,7 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     if (cfg->background > 0 && t->bag.columns != NULL) {
         t->background.set = ast_bag_basis(&t->bag, 0) - stride * (size_t)cfg->background; /* the lead's last columns */
         t->background.mean = t->background.set - stride;
+        t->background.changed = t->bag.changed + t->bag.lead - cfg->background - 1;
     }
     t->anchor = ast_arena_take(arena, stride, sizeof *t->anchor);
 
@@ -229,8 +231,8 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
         column[j] = patch;
     }
     ast_images_mean(&images, t->mean);
-    float *background_mean = t->tile + (size_t)AST_MAX_HISTORY * (size_t)t->stride; /* behind the patches */
-    if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, background_mean + t->stride);
+    float *background_mean = t->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
+    if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, t->basis);
     if (used == t->cfg.history && fit_images(t, &images, background_mean, &rank) != AST_OK) {
         *t = before;
         return AST_E_BACKEND;
@@ -275,7 +277,8 @@ static void distances_to_mean(struct ast_tracker *t, const float *mean, const fl
 
 /* Distances of all proposed particles to all models, tile by tile. */
 static int score_particles(struct ast_tracker *t, int models) {
-    const struct ast_scene scene = {&t->cfg, t->la, &t->history, &t->bag, t->background.size, t->work, t->work_count};
+    const struct ast_scene scene = {&t->cfg, t->la,   t->kernels,   &t->history, &t->bag, t->background.size,
+                                    t->tile, t->work, t->work_count};
     if (t->bag.count == 0) {
         const float *column[AST_MAX_HISTORY];
         const struct ast_images images = {column, t->history.count, t->dim};

@@ -17,6 +17,7 @@
 struct ast_tracker {
     ast_config cfg;
     const struct ast_linalg *la;
+    const struct ast_kernels *kernels;
     const struct ast_scoring *scoring;
     void *owned; /* the block, when ast_init allocated it */
     int dim;     /* D: floats in a feature vector */

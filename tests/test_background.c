@@ -81,8 +81,9 @@ enum { DIM = 37, STRIDE = 48, SIZE = 19 };
 static const float canary = 77.0f;
 static float columns[(SIZE + 1) * STRIDE], before[(SIZE + 1) * STRIDE];
 
+static unsigned char changed[1 + SIZE];
 static struct ast_background filled(uint64_t seed) {
-    const struct ast_background b = {DIM, STRIDE, SIZE, columns, columns + STRIDE};
+    const struct ast_background b = {DIM, STRIDE, SIZE, columns, columns + STRIDE, changed};
     struct noise noise = {seed};
     for (int i = 0; i < (SIZE + 1) * STRIDE; i++) columns[i] = canary;
     for (int z = 0; z < SIZE; z++) noise_fill(&noise, b.set + z * STRIDE, DIM, -1.0, 2.0);
@@ -110,8 +111,11 @@ static void test_replacing_moves_the_mean_a_little(void) {
         struct ast_background b = filled(7);
         noise_fill(&noise, vector, DIM, -1.0, 2.0);
         ast_background_average(&b);
+        for (int x = 0; x <= SIZE; x++) TEST_ASSERT_EQUAL_INT(1, changed[x]);
+        memset(changed, 0, sizeof changed);
         memcpy(before, columns, sizeof before);
         ast_background_replace(&b, slot, vector);
+        for (int x = 0; x <= SIZE; x++) TEST_ASSERT_EQUAL_INT(x == 0 || x == 1 + slot, changed[x]);
         for (int d = 0; d < DIM; d++)
             TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.998 * (double)before[d] + 0.002 * (double)vector[d], (double)b.mean[d]);
         for (int z = 0; z < SIZE; z++)

@@ -129,9 +129,11 @@ static void add_candidate(struct bench *b, const float *patch) {
 static void score_in_tiles(struct bench *b, int way, int tile, float *distance) {
     const struct ast_scene scene = {.cfg = &b->cfg,
                                     .la = b->la,
+                                    .kernels = ast_kernels(),
                                     .history = &b->history,
                                     .bag = &b->bag[way],
                                     .background = b->cfg.background,
+                                    .spare = b->tile,
                                     .work = b->work,
                                     .work_count = b->work_count};
     const size_t column = (size_t)b->stride, models = (size_t)b->bag[way].count;

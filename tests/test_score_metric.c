@@ -305,14 +305,17 @@ static float *history_of(ast_tracker *t, int j) {
 static void score(ast_tracker *t, const float *vectors, int count, float *distance) {
     const struct ast_scene scene = {.cfg = &t->cfg,
                                     .la = t->la,
+                                    .kernels = ast_kernels(),
                                     .history = &t->history,
                                     .bag = &t->bag,
                                     .background = t->background.size,
+                                    .spare = t->tile,
                                     .work = t->work,
                                     .work_count = t->work_count};
     TEST_ASSERT_LESS_OR_EQUAL_INT(AST_TILE, count);
-    memcpy(t->tile, vectors, (size_t)(count * t->stride) * sizeof *vectors);
+    ast_bag_mark(&t->bag); /* the tests write where they like */
     TEST_ASSERT_EQUAL_INT(0, t->scoring->prepare(&t->scoring_scratch, &scene));
+    memcpy(t->tile, vectors, (size_t)(count * t->stride) * sizeof *vectors);
     TEST_ASSERT_EQUAL_INT(0, t->scoring->tile(&t->scoring_scratch, &scene, t->tile, count, distance));
 }
 
