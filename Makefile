@@ -223,9 +223,9 @@ $(UNITY_DIR)/src/unity.c:
 	$(if $(filter .unity,$(UNITY_DIR)),scripts/fetch_unity.sh $(UNITY_DIR),@echo "$@ is missing: UNITY_DIR is not a checkout of \
 	Unity" >&2; exit 1)
 
-test-python: .venv/installed ## the Python tests, in a virtual environment of their own
+test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests, in a virtual environment of their own
 	@mkdir -p $(BUILDDIR)/python
-	@.venv/bin/python -m pytest -q -rs -p no:cacheprovider --junitxml=$(BUILDDIR)/python/junit.xml bindings/python/tests; status=$$?; \
+	@AST_COMMAND=$(abspath $(BUILDDIR)/asttrack) .venv/bin/python -m pytest -q -rs -p no:cacheprovider --junitxml=$(BUILDDIR)/python/junit.xml bindings/python/tests; status=$$?; \
 	sed -n 's/.*<testsuite [^>]*errors="\([0-9]*\)" failures="\([0-9]*\)" skipped="\([0-9]*\)" tests="\([0-9]*\)".*/\1 \2 \3 \4/p' \
 	    $(BUILDDIR)/python/junit.xml | awk '{ printf "Python tests: %d passed, %d failed, %d skipped\n", \
 	    $$4 - $$1 - $$2 - $$3, $$1 + $$2, $$3 }' > $(BUILDDIR)/python/summary; exit $$status
