@@ -34,7 +34,7 @@ def test_command_and_evaluation_give_the_same_figures(tmp_path: Path, preset: st
     scene = c_command.render(tmp_path / "scene", "--frames", 60, "--size", "160x120", "--seed", 4)
     truth = scene / "groundtruth.txt"
     lines = truth.read_text().splitlines()
-    # The evaluation rounds the first box, so it is whole here; a hole of each kind; a truth far off, to have figures apart from 0 and 1.
+    # The evaluation rounds the first box, so it is whole here; a hole of each kind; some truth far off, for figures below 1.
     lines[0] = ",".join(f"{float(side):.0f}" for side in lines[0].split(","))
     lines[5], lines[6] = "nan,nan,nan,nan", "0,0,0,0"
     for frame in range(20, 29):
