@@ -67,8 +67,8 @@ def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_help_names_every_sub_command() -> None:
     text = command("--help").stdout
-    assert all(f"\n    {name} " in text for name in ("track", "eval", "bench", "fleet", "gallery"))
-    for name in ("track", "eval", "bench", "fleet", "gallery"):
+    assert all(f"\n    {name} " in text for name in ("track", "eval", "recovery", "bench", "fleet", "gallery"))
+    for name in ("track", "eval", "recovery", "bench", "fleet", "gallery"):
         assert command(name, "--help").returncode == 0
     assert command("--version").stdout == f"asttrack {__version__}\n"
 
@@ -88,6 +88,7 @@ def test_help_names_every_sub_command() -> None:
         (["track", "x", "--box", "1,2,3,4", "--out", "a.gif"], "a.gif: the name of a video must end in .mp4 or .avi or .mkv"),
         (["track", "x", "--particles"], "--particles: draws into the video of --out"),
         (["track", "x", "--set", "particles=many"], "particles=many: not an integer"),
+        (["recovery", "--events", "fog:5"], "fog:5: not an event: occlusion:FRAMES, leave:FRAMES, cut:FRAMES"),
         (["bench", "--seconds", "0"], "--seconds: 0: not a number of seconds"),
         (["fleet", "x", "--out", "a.txt"], "a.txt: the name of a table must end in .csv or .parquet"),
         (["gallery", "x", "--frames", "9"], "--frames: at least 80"),

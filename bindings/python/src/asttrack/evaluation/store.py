@@ -9,8 +9,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from asttrack.evaluation.conditions import Conditions
 from asttrack.evaluation.confidence import BINS
 from asttrack.evaluation.metrics import OVERLAPS, RADII, precision_curve, success_curve
+from asttrack.evaluation.recovery import Recovery
 from asttrack.evaluation.results import Evaluation, Measured, mean_curve
 from asttrack.evaluation.summary import (
     ABLATED,
@@ -26,7 +28,7 @@ from asttrack.evaluation.summary import (
     spatial_rows,
     tracker_reliability,
 )
-from asttrack.evaluation.tables import markdown, tables
+from asttrack.evaluation.tables import Lines, markdown, tables
 from asttrack.evaluation.trackers import AsttrackSpec
 from asttrack.output import write_text
 
@@ -36,6 +38,7 @@ ABLATION_COLUMNS = (
     "variant",
     *(f"{figure.key}{end}" for figure in ABLATED for end in ("", "_low", "_high", "_change", "_change_low", "_change_high")),
 )
+RECOVERY_COLUMNS = ("event", "frames", "scene", "tracker", "held", "noticed", "took", "recovered")
 TRACK_COLUMNS = ("sequence", "tracker", "start", "seed", "frame", "x", "y", "w", "h", "ok", "score", "centre_error", "overlap")
 
 
@@ -54,7 +57,7 @@ def write_results(evaluation: Evaluation, directory: Path, compare: bool) -> lis
         "results.csv": csv_text(RUN_COLUMNS, map(run_line, evaluation.runs)),
         "tracks.csv": csv_text(TRACK_COLUMNS, (line for measured in evaluation.runs for line in track_lines(measured))),
         "confidence.csv": csv_text(CONFIDENCE_COLUMNS, confidence_lines(evaluation)),
-        "tables.md": tables_text(evaluation, compare),
+        "tables.md": markdown_text(evaluation.conditions, evaluation.notes, tables(evaluation, compare)),
         **({"ablation.csv": csv_text(ABLATION_COLUMNS, map(worth_line, ablation(evaluation)))} if compare else {}),
         "results.json": json.dumps(_finite(as_json(evaluation, compare)), indent=1, allow_nan=False) + "\n",
     }
@@ -129,16 +132,20 @@ def worth_line(worth: Worth) -> list[object]:
     return line
 
 
-def tables_text(evaluation: Evaluation, compare: bool) -> str:
-    """The printed tables in Markdown, with what made them."""
-    told = evaluation.conditions
+def markdown_text(told: Conditions, notes: list[str], tables: list[tuple[str, Lines]]) -> str:
+    """Tables in Markdown, with what made them."""
     made = (
         f"Made by `{told.command}` ({told.date}; asttrack {told.asttrack}, {told.backend}; OpenCV {told.opencv}; "
         f"{told.processor}, {told.jobs} at a time)."
     )
-    notes = [f"- {note}" for note in evaluation.notes]
-    sections = [f"## {title[0].upper()}{title[1:]}\n\n{markdown(lines)}" for title, lines in tables(evaluation, compare)]
-    return "\n\n".join([made, *(["\n".join(notes)] if notes else []), *sections]) + "\n"
+    lines = [f"- {note}" for note in notes]
+    sections = [f"## {title[0].upper()}{title[1:]}\n\n{markdown(table)}" for title, table in tables]
+    return "\n\n".join([made, *(["\n".join(lines)] if lines else []), *sections]) + "\n"
+
+
+def recovery_line(one: Recovery) -> list[object]:
+    """A run through a scene, as RECOVERY_COLUMNS."""
+    return [one.event.kind, one.event.frames, one.scene, one.tracker, int(one.held), int(one.noticed), one.took, int(one.recovered)]
 
 
 def as_json(evaluation: Evaluation, compare: bool) -> dict[str, Any]:

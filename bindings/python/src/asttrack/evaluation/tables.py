@@ -5,6 +5,7 @@ from collections.abc import Sequence as Many
 from typing import TypeAlias
 
 from asttrack.evaluation.confidence import WRONG
+from asttrack.evaluation.recovery import WITHIN, Recovery, confidences, summaries
 from asttrack.evaluation.results import Evaluation
 from asttrack.evaluation.summary import (
     ABLATED,
@@ -40,6 +41,26 @@ def tables(evaluation: Evaluation, compare: bool) -> list[tuple[str, Lines]]:
         title = "what each variant is worth over the sequences, against the first, seed by seed"
         found.append((title, ablation_table(ablation(evaluation))))
     return found
+
+
+def recovery_tables(found: list[Recovery]) -> list[tuple[str, Lines]]:
+    """The tables of the recoveries with their titles."""
+    heads = ["event", "tracker", "scenes", "on it before", "said lost", f"on it within {WITHIN}", "%", "ever", "frames taken"]
+    lines: Lines = [heads]
+    last: object = None
+    for one in summaries(found):
+        if one.event != last:
+            lines.append([])
+        counts = map(str, (one.runs, one.held, one.noticed, one.recovered, f"{100 * one.recovered / one.runs:.0f}", one.ever))
+        lines.append([one.event.name, one.tracker, *counts, "-" if math.isnan(one.took) else f"{one.took:g}"])
+        last = one.event
+    known: Lines = [["tracker", *(figure.title for figure in CONFIDENCE)], []]
+    for tracker, values in confidences(found).items():
+        known.append([tracker, *(format_spread(Spread(*[values[figure.key]] * 3), figure) for figure in CONFIDENCE)])
+    return [
+        ("recovery: scenes in which the tracker is on the object again, and how soon", lines),
+        ("confidence over the frames of all of these scenes", known),
+    ]
 
 
 def figures_table(rows: Many[Row]) -> Lines:
