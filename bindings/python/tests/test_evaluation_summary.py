@@ -209,6 +209,12 @@ def test_a_list_of_variants_that_is_none_is_refused(tmp_path: Path, text: str, m
         read_variants(tmp_path / "absent.toml")
 
 
+def test_the_ablation_of_the_documentation_is_legal_and_each_variant_differs() -> None:
+    variants = read_variants(REPOSITORY / "docs" / "ablation.toml")
+    configurations = [variant.make(1).tracker.config for variant in variants]
+    assert all(one != other for place, one in enumerate(configurations) for other in configurations[:place])
+
+
 def test_the_list_in_the_documentation_is_one(tmp_path: Path) -> None:
     text = (REPOSITORY / "docs" / "evaluation.md").read_text(encoding="utf-8")
     path = tmp_path / "variants.toml"

@@ -5,12 +5,13 @@ from collections.abc import Iterable
 from collections.abc import Sequence as Many
 from html import escape
 from importlib import resources
+from itertools import pairwise
 from string import Template
 
 import numpy as np
 
 from asttrack.evaluation.bag_pictures import ModelPicture
-from asttrack.evaluation.confidence import WRONG
+from asttrack.evaluation.confidence import BINS, WRONG
 from asttrack.evaluation.figures import colour, curves, errors_over_time, reliability_chart
 from asttrack.evaluation.film import Still, jpeg_uri, png_uri, strip
 from asttrack.evaluation.protocol import SPATIAL
@@ -28,6 +29,7 @@ from asttrack.evaluation.summary import (
     confidence_rows,
     one_pass_rows,
     spatial_rows,
+    tracker_reliability,
 )
 from asttrack.evaluation.trackers import AsttrackSpec
 
@@ -198,7 +200,8 @@ def _confidence(evaluation: Evaluation) -> str:
     chart = reliability_chart(evaluation)
     figure = (
         f'<div class="pair"><figure class="chart">{chart}<figcaption>Reliability: of the frames with such a score, how many are '
-        "right. On the dashed line the score is what it says. A larger dot stands for more frames.</figcaption></figure></div>"
+        "right. On the dashed line the score is what it says. A larger dot stands for more frames.</figcaption></figure>"
+        f"{_calibration(evaluation)}</div>"
     )
     return (
         "<section><h2>Does it know when it is wrong?</h2>"
@@ -207,6 +210,22 @@ def _confidence(evaluation: Evaluation) -> str:
         "wrong one is called lost; 0.5 is chance. A loss is noticed when the tracker calls it lost before it is right again, after "
         f"so many frames.</p>{_table(evaluation, overall, figures=CONFIDENCE)}{figure if chart else ''}</section>"
     )
+
+
+def _calibration(evaluation: Evaluation) -> str:
+    """The reliability as a table: a line for each bin of scores, a column for each tracker that gives scores."""
+    columns = [("score", 0)]
+    cells: list[list[str]] = [[] for _ in BINS[1:]]
+    for label in evaluation.labels:
+        found = tracker_reliability(evaluation, label)
+        if not found.frames.any():
+            continue
+        columns.append((f"right, {label}", 0))
+        for line, frames, right in zip(cells, found.frames, found.right, strict=True):
+            share = f"<b>{right:.2f}</b><span class='range'>of {frames:,}</span>" if frames else "-"
+            line.append(f'<td data-value="{right if frames else ""}">{share}</td>')
+    heads = (f'<th scope="row">{low:.1f} to {high:.1f}</th>' for low, high in pairwise(BINS))
+    return _table_of(columns, [f"<tr>{head}{''.join(line)}</tr>" for head, line in zip(heads, cells, strict=True)])
 
 
 def _spatial(evaluation: Evaluation) -> str:
