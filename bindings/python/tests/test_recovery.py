@@ -4,12 +4,14 @@ import csv
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import c_command
+import small_sequence
 from asttrack.evaluation.metrics import Floats
 from asttrack.evaluation.protocol import ONE_PASS, Run
 from asttrack.evaluation.recovery import (
@@ -22,10 +24,12 @@ from asttrack.evaluation.recovery import (
     frames_to_recover,
     half_inside,
     parse_events,
+    recover,
     summaries,
 )
 from asttrack.evaluation.results import measure
 from asttrack.evaluation.sequence import Sequence
+from asttrack.evaluation.trackers import parse_trackers
 from asttrack.failures import DataError, UsageError
 
 EVENT = Event("occlusion", 5)
@@ -164,6 +168,53 @@ def test_the_command_renders_counts_and_writes(tmp_path: Path) -> None:
     # A tracker that does not lose an object in five frames of the scene's start is on it before.
     assert lines[0]["held"] == "1"
     assert (tmp_path / "recovery.md").read_text().count("| asttrack |") == 3
+
+
+@pytest.fixture
+def copier(tmp_path: Path) -> Path:
+    """In the place of the command: a scene of four frames of absence, whatever is asked for."""
+    scene = tmp_path / "scene"
+    small_sequence.write(scene)
+    (scene / "absence.label").write_text("0\n" * 8 + "1\n" * 4 + "0\n" * 12)
+    script = tmp_path / "copier"
+    script.write_text(f'#!/bin/sh\ncp -r {scene} "$2"\n')
+    script.chmod(0o755)
+    return script
+
+
+def test_every_tracker_goes_through_every_scene(copier: Path) -> None:
+    trackers = parse_trackers("asttrack,medianflow", "tiny")
+    found, interrupted = recover(copier, [Event("leave", 4), EVENT], 2, trackers, 2, small_sequence.unseen)
+    assert not interrupted
+    assert [(one.event.name, one.tracker, one.scene) for one in found] == [
+        (event, tracker, scene)
+        for event in ("leave:4", "occlusion:5")
+        for tracker in ("asttrack", "medianflow")
+        for scene in (1, 2)
+    ]
+    assert all(one.held and one.error is None for one in found)
+
+
+def test_an_interrupt_keeps_what_is_finished(copier: Path) -> None:
+    def interrupted_after_one(items: Iterable[Recovery], total: int) -> Iterable[Recovery]:
+        assert total == 3
+        for item in items:
+            yield item
+            raise KeyboardInterrupt
+
+    found, interrupted = recover(copier, [EVENT], 3, parse_trackers("asttrack", "tiny"), 1, interrupted_after_one)
+    assert interrupted
+    assert [one.scene for one in found] == [1]
+
+
+def test_a_run_that_fails_is_told_and_has_not_recovered(copier: Path) -> None:
+    (copier.parent / "scene" / "img" / "00010.pgm").write_bytes(b"P5")
+    done = command("--synth", copier, "--events", "cut:4", "--scenes", 1, "--preset", "tiny")
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("asttrack: cut:4, scene 1, asttrack: ")
+    assert line.endswith("00010.pgm: not a picture that OpenCV reads, or damaged")
+    assert re.search(r"^cut:4 +asttrack +1 +0 +0 +0 +0 +0 +-$", done.stdout, re.MULTILINE)
 
 
 def test_what_cannot_render_is_named(tmp_path: Path) -> None:
