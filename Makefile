@@ -24,6 +24,12 @@ SANITIZE ?=
 FRAMES ?=
 # a checkout of Unity, the C test framework (default: fetched)
 UNITY_DIR ?= .unity
+# real sequences for `make accuracy` and `make accuracy-tables`
+SEQUENCES ?= ../shared/sequences
+# seeds of each tracker for `make accuracy-tables`
+SEEDS ?= 5
+# processes at a time for the same
+JOBS ?= 2
 # Python that makes the virtual environment of the Python tests
 PYTHON ?= python3
 # most stack that a call into the library may take, bytes
@@ -224,9 +230,9 @@ $(UNITY_DIR)/src/unity.c:
 	$(if $(filter .unity,$(UNITY_DIR)),scripts/fetch_unity.sh $(UNITY_DIR),@echo "$@ is missing: UNITY_DIR is not a checkout of \
 	Unity" >&2; exit 1)
 
-test-python: .venv/installed ## the Python tests, in a virtual environment of their own
+test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests, in a virtual environment of their own
 	@mkdir -p $(BUILDDIR)/python
-	@.venv/bin/python -m pytest -q -rs -p no:cacheprovider --junitxml=$(BUILDDIR)/python/junit.xml bindings/python/tests; status=$$?; \
+	@AST_COMMAND=$(abspath $(BUILDDIR)/asttrack) .venv/bin/python -m pytest -q -rs -p no:cacheprovider --junitxml=$(BUILDDIR)/python/junit.xml bindings/python/tests; status=$$?; \
 	sed -n 's/.*<testsuite [^>]*errors="\([0-9]*\)" failures="\([0-9]*\)" skipped="\([0-9]*\)" tests="\([0-9]*\)".*/\1 \2 \3 \4/p' \
 	    $(BUILDDIR)/python/junit.xml | awk '{ printf "Python tests: %d passed, %d failed, %d skipped\n", \
 	    $$4 - $$1 - $$2 - $$3, $$1 + $$2, $$3 }' > $(BUILDDIR)/python/summary; exit $$status
@@ -256,7 +262,7 @@ tsan: ## the C tests under the thread sanitizer, with the builtin backend
 
 # ---- Checks ----
 
-.PHONY: size symbols stack stack-objects lint format format-check
+.PHONY: size symbols stack stack-objects accuracy accuracy-tables lint format format-check
 size: $(static_lib) ## bytes of code and data; fails when the library has writable data
 	@$(SIZE) -t $(static_lib)
 	@$(OBJDUMP) -t $(static_lib) | awk -F '\t' '/file format/ { sub(/:.*/, ""); object = $$0 } \
@@ -276,6 +282,25 @@ stack: ## stack of the deepest chain of calls below each function of the API; fa
 	    CFLAGS='-O3 -ffunction-sections -fno-jump-tables -fcallgraph-info=su' stack-objects
 stack-objects: $(static_objects) $(other_objects)
 	@$(PYTHON) scripts/check_stack.py --ceiling $(STACK_CEILING) --objdump $(OBJDUMP) $^
+
+accuracy: $(BUILDDIR)/asttrack ## hold the default preset to tests/accuracy_bounds.txt; UPDATE=1 measures and writes it anew
+	@$(PYTHON) scripts/check_accuracy.py --command $< --bounds tests/accuracy_bounds.txt --sequences $(SEQUENCES) \
+	    $(if $(filter 1,$(UPDATE)),--update)
+
+eight := surfer coke_can girl tiger1 tiger2 coupon_book occluded_face occluded_face2
+validation := david bolt bag pedestrian1
+knowing := $(eight) car panda pedestrian1
+peers := csrt,kcf,mil,tld,boosting,medianflow
+measured = .venv/bin/python -m asttrack eval $(addprefix $(SEQUENCES)/,$($1)) --seeds $(SEEDS) --jobs $(JOBS) \
+	--runs $(BUILDDIR)/accuracy/runs --out $(BUILDDIR)/accuracy/$2
+accuracy-tables: .venv/installed $(BUILDDIR)/asttrack ## measure what docs/accuracy.md shows, and write it; hours
+	$(call measured,eight,eight) --trackers asttrack,asttrack:paper,asttrack:paper:model=linear$(comma)basis=raw,$(peers)
+	$(call measured,validation,validation) --trackers asttrack,asttrack:paper,$(peers)
+	$(call measured,eight,ablation) --ablation docs/ablation.toml
+	$(call measured,knowing,confidence) --trackers asttrack,$(peers)
+	.venv/bin/python -m asttrack recovery --trackers asttrack,$(peers) --jobs $(JOBS) --synth $(BUILDDIR)/asttrack \
+	    --out $(BUILDDIR)/accuracy/recovery
+	$(PYTHON) scripts/insert_tables.py docs/accuracy.md $(BUILDDIR)/accuracy
 
 lint: ## static analysis of the C sources
 	@$(CLANG_TIDY) --version >/dev/null || { echo "no $(CLANG_TIDY): on Debian, apt-get install clang-tidy" >&2; exit 1; }

@@ -1,5 +1,5 @@
-/* How well a track fits the ground truth: the three figures of the tracking literature. Frames without truth are not counted; the
- * first frame, whose box is given, is. */
+/* How well a track fits the ground truth: the three figures of the tracking literature. Frames without truth are not counted, nor are
+ * those whose box is given: they would say nothing of the tracker, and published figures are without them (docs/evaluation.md). */
 #ifndef METRICS_H
 #define METRICS_H
 

@@ -405,7 +405,11 @@ static bool is_cut(const scene *s, double t) {
     return t >= s->cut_at && t < s->cut_at + (double)s->options.cut;
 }
 
-bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, bool *present) {
+static bool is_hidden(const scene *s, double t) {
+    return t >= s->occlusion_at && t < s->occlusion_at + (double)s->options.occlusion;
+}
+
+bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, scene_presence *presence) {
     const double t = (double)frame, scale = target_scale(s, t);
     const int32_t width = s->options.width, height = s->options.height;
     film f = {calloc((size_t)width * (size_t)height, sizeof(float)), width, height};
@@ -418,14 +422,14 @@ bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, bool
     const double half_w = scale * half_width(s), half_h = scale * half_height(s);
     if (is_cut(s, t)) {
         draw_ground(&f, s, s->other_scene, t);
-        *present = false;
+        *presence = SCENE_AWAY;
     } else {
         draw_ground(&f, s, s->ground, t);
         draw_target(&f, s, s->other.x + s->other.speed * t, s->other.y, s->other.scale, SEED_LOOKALIKE);
         draw_target(&f, s, x, y, scale, SEED_TARGET);
         draw_board(&f, s, &s->partial, t, SEED_PARTIAL_BOARD);
         draw_board(&f, s, &s->full, t, SEED_FULL_BOARD);
-        *present = x - half_w < (double)width - 0.5;
+        *presence = x - half_w >= (double)width - 0.5 ? SCENE_AWAY : is_hidden(s, t) ? SCENE_HIDDEN : SCENE_IN_VIEW;
     }
     expose(&f, s, t, grey);
     free(f.tones);

@@ -27,8 +27,10 @@ int32_t scene_frames_needed(const scene_options *options);
 /* NULL when out of memory. */
 scene *scene_create(const scene_options *options);
 void scene_free(scene *s);
-/* Renders a frame (from 0). *present: whether the target is in this scene and in view; hidden behind a board it is, and *box tells
- * where. False when out of memory. */
-bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, bool *present);
+/* What there is of the target: in view, at least in part; wholly behind a board; out of the frame, or another scene is shown. */
+typedef enum scene_presence { SCENE_IN_VIEW, SCENE_HIDDEN, SCENE_AWAY } scene_presence;
+
+/* Renders a frame (from 0). *box tells where the target is, hidden or not; away it means nothing. False when out of memory. */
+bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, scene_presence *presence);
 
 #endif

@@ -27,8 +27,9 @@ static const option table[] = {
 
 static void print_help(void) {
     printf("usage: asttrack synth OUTDIR [options]\n"
-           "Renders a sequence with known truth: OUTDIR/img/00001.pgm and on, and OUTDIR/groundtruth.txt. The target drifts and\n"
-           "darts, grows and shrinks, is hidden in part and fully, goes through a change of light and meets a look-alike.\n"
+           "Renders a sequence with known truth: OUTDIR/img/00001.pgm and on, OUTDIR/groundtruth.txt, and OUTDIR/absence.label\n"
+           "with a line a frame: 1 where nothing of the target is in view, 0 elsewhere. The target drifts and darts, grows and\n"
+           "shrinks, is hidden in part and fully, goes through a change of light and meets a look-alike.\n"
            "The same options give the same frames; fewer than 200 of them are the beginning of the same sequence.\n\n");
     option_print(table);
 }
@@ -113,24 +114,25 @@ static bool has_no_strangers(const char *directory, int32_t frames) {
     return good;
 }
 
-static bool render_one(const scene *s, int32_t index, const char *directory, image *grey, FILE *truth) {
+static bool render_one(const scene *s, int32_t index, const char *directory, image *grey, FILE *truth, FILE *absence) {
     ast_box box;
-    bool present;
+    scene_presence presence;
     char name[NAME_SIZE];
     frame_name(name, index + 1);
     char *path = path_join(directory, name);
-    bool good = path != NULL && scene_render(s, index, grey, &box, &present);
+    bool good = path != NULL && scene_render(s, index, grey, &box, &presence);
     if (!good) {
         report_error("%s: out of memory", directory);
     } else {
         good = image_write(path, grey);
-        truth_write_line(truth, present ? &box : NULL);
+        truth_write_line(truth, presence == SCENE_AWAY ? NULL : &box);
+        fprintf(absence, "%d\n", presence == SCENE_IN_VIEW ? 0 : 1);
     }
     free(path);
     return good;
 }
 
-static bool render_all(const scene *s, int32_t frames, const char *directory, FILE *truth) {
+static bool render_all(const scene *s, int32_t frames, const char *directory, FILE *truth, FILE *absence) {
     image grey;
     bool good = true;
     memset(&grey, 0, sizeof grey);
@@ -139,7 +141,7 @@ static bool render_all(const scene *s, int32_t frames, const char *directory, FI
             report_error("interrupted before frame %d of %d", (int)i + 1, (int)frames);
             good = false;
         } else {
-            good = render_one(s, i, directory, &grey, truth);
+            good = render_one(s, i, directory, &grey, truth, absence);
             report_progress("synth", i + 1, frames, "");
         }
     }
@@ -149,10 +151,16 @@ static bool render_all(const scene *s, int32_t frames, const char *directory, FI
 }
 
 /* The ground truth appears last: a directory that has it is complete. */
-static bool write_sequence(const scene *s, int32_t frames, const char *image_directory, const char *truth_path) {
-    output_file truth;
+static bool write_sequence(const scene *s, int32_t frames, const char *image_directory, const char *truth_path,
+                           const char *absence_path) {
+    output_file truth, absence;
     if (!output_open(&truth, truth_path)) return false;
-    if (!render_all(s, frames, image_directory, truth.stream)) {
+    if (!output_open(&absence, absence_path)) {
+        output_discard(&truth);
+        return false;
+    }
+    if (!render_all(s, frames, image_directory, truth.stream, absence.stream) || !output_commit(&absence)) {
+        output_discard(&absence);
         output_discard(&truth);
         return false;
     }
@@ -161,16 +169,18 @@ static bool write_sequence(const scene *s, int32_t frames, const char *image_dir
 
 static bool synthesise(const scene_options *o, const char *directory) {
     char *image_directory = path_join(directory, "img"), *truth_path = path_join(directory, "groundtruth.txt");
+    char *absence_path = path_join(directory, "absence.label");
     scene *s = scene_create(o);
-    bool good = image_directory != NULL && truth_path != NULL && s != NULL;
+    bool good = image_directory != NULL && truth_path != NULL && absence_path != NULL && s != NULL;
     if (!good) {
         report_error("%s: out of memory", directory);
     }
     good = good && path_make_directory(directory) && path_make_directory(image_directory) &&
-           has_no_strangers(image_directory, o->frames) && write_sequence(s, o->frames, image_directory, truth_path);
+           has_no_strangers(image_directory, o->frames) && write_sequence(s, o->frames, image_directory, truth_path, absence_path);
     scene_free(s);
     free(image_directory);
     free(truth_path);
+    free(absence_path);
     return good;
 }
 

@@ -60,15 +60,20 @@ static bool write_annotated(run *r, const annotation *a) {
     return good;
 }
 
+/* Counts a tracked frame; those whose box was given do not count. */
+static void measure(run *r, int32_t index, const ast_result *result) {
+    const ast_box *truth = truth_box(&r->job->frames->annotations, index);
+    if (truth != NULL) {
+        metrics_add(&r->fit, &result->box, truth);
+    }
+    r->lost += result->status == AST_LOST ? 1 : 0;
+}
+
 /* index: of the frame in its sequence, from 0. cloud: whether the tracker's particles belong to this frame. False after reporting
  * an output that failed, which ends the run. */
 static bool record(run *r, int32_t index, const image *frame, const ast_result *result, bool cloud) {
     const track_job *job = r->job;
     const ast_box *truth = truth_box(&job->frames->annotations, index);
-    if (truth != NULL) {
-        metrics_add(&r->fit, &result->box, truth);
-    }
-    r->lost += result->status == AST_LOST ? 1 : 0;
     if (r->csv.stream != NULL) {
         csv_write_row(r->csv.stream, index + 1, result);
     }
@@ -199,7 +204,9 @@ static bool follow(run *r, int32_t first) {
             report_error("interrupted before frame %d of %d", (int)i + 1, (int)s->count);
             return false;
         }
-        if (step(r, s->frames[i], &result) && !record(r, i, &r->frame, &result, true)) return false;
+        if (!step(r, s->frames[i], &result)) continue;
+        measure(r, i, &result);
+        if (!record(r, i, &r->frame, &result, true)) return false;
     }
     return true;
 }

@@ -42,7 +42,7 @@ static const char *parse_line(const char *line, ast_box *box) {
     }
     if (*at != '\0') return "more than four numbers x,y,w,h";
     if (nans != 0 && nans != 4) return "nan in part of a box";
-    if (nans == 4) {
+    if (nans == 4 || (number[0] == 0.0 && number[1] == 0.0 && number[2] == 0.0 && number[3] == 0.0)) {
         const ast_box none = {NAN, NAN, NAN, NAN};
         *box = none;
         return NULL;

@@ -1,4 +1,5 @@
-/* Ground truth files: one line "x,y,w,h" a frame, in pixels, 0-based top-left corner; "nan,nan,nan,nan" where there is no box. */
+/* Ground truth files: one line "x,y,w,h" a frame, in pixels, 0-based top-left corner; "nan,nan,nan,nan" where there is no box, or
+ * "0,0,0,0", which some annotators write. */
 #ifndef TRUTH_H
 #define TRUTH_H
 

@@ -274,7 +274,7 @@ static void run_trials(struct trial *trials, int count) {
 static void test_synth_makes_a_sequence(void) {
     char header[32], truth[TEXT_SIZE];
     int lines = 0;
-    TEST_ASSERT_EQUAL_INT(13, count_files(at("@small")));
+    TEST_ASSERT_EQUAL_INT(14, count_files(at("@small")));
     for (int f = 1; f <= 12; f++) {
         char name[64];
         snprintf(name, sizeof name, "@small/img/%05d.pgm", f);
@@ -293,6 +293,33 @@ static void test_synth_makes_a_sequence(void) {
         line += used;
     }
     TEST_ASSERT_EQUAL_INT(12, lines);
+}
+
+/* The label says in which frames nothing of the target is in view; the truth goes on behind a board, and is nan elsewhere. */
+static void test_synth_labels_absence(void) {
+    static const char *const options[] = {"--occlusion 7", "--occlusion 0 --leave 7", "--occlusion 0 --cut 7"};
+    static char labels[TEXT_SIZE], truth[TEXT_SIZE];
+    for (int i = 0; i < 3; i++) {
+        char line[256];
+        int frames = 0, absent = 0;
+        snprintf(line, sizeof line, "synth @event%d --frames 200 --size 96x72 %s", i, options[i]);
+        run_well(line);
+        snprintf(line, sizeof line, "@event%d/absence.label", i);
+        (void)read_file(at(line), labels, sizeof labels);
+        snprintf(line, sizeof line, "@event%d/groundtruth.txt", i);
+        (void)read_file(at(line), truth, sizeof truth);
+        const char *box = truth;
+        for (const char *label = labels; *label != '\0'; label += 2, frames++) {
+            TEST_ASSERT_TRUE((label[0] == '0' || label[0] == '1') && label[1] == '\n');
+            TEST_ASSERT_NOT_NULL(box);
+            TEST_ASSERT_EQUAL_INT(label[0] == '0' || i == 0, strncmp(box, "nan", 3) != 0);
+            absent += label[0] == '1';
+            box = strchr(box, '\n');
+            box = box != NULL ? box + 1 : NULL;
+        }
+        TEST_ASSERT_EQUAL_INT_MESSAGE(200, frames, options[i]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(7, absent, options[i]);
+    }
 }
 
 static void test_synth_repeats_itself(void) {
@@ -405,6 +432,30 @@ static void test_files_instead_of_a_directory(void) {
     TEST_ASSERT_NOT_NULL(strstr(csv, "\n1,30.0000,20.0000,16.0000,14.0000,1.000000,"));
 }
 
+/* The frame whose box is given does not count, nor does one without a box: nan or, as others write it, 0 four times. */
+static void test_what_counts(void) {
+    static const char *const truths[] = {"30,20,16,14\n1000,20,16,14\n", "30,20,16,14\nnan,nan,nan,nan\n1000,20,16,14\n",
+                                         "30 20 16 14\n0 0 0 0\n1000 20 16 14\n"};
+    static char picture[TEXT_SIZE];
+    for (int i = 0; i < 3; i++) {
+        make_directory(at("@counted"));
+        for (int f = 1; f <= (i == 0 ? 2 : 3); f++) {
+            char name[64];
+            snprintf(name, sizeof name, "@small/img/%05d.pgm", f);
+            const size_t size = read_file(at(name), picture, sizeof picture);
+            snprintf(name, sizeof name, "@counted/%d.pgm", f);
+            write_file(at(name), picture, size);
+        }
+        write_text(at("@counted/groundtruth.txt"), truths[i]);
+        const struct outcome *o = run("track @counted --preset tiny");
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, o->code, o->err);
+        TEST_ASSERT_EQUAL_STRING("", o->err);
+        const struct figures f = figures_of(o);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, f.precision); /* the given frame would make it a half */
+        TEST_ASSERT_TRUE(f.error > 900 && f.success < 1e-9);
+    }
+}
+
 static void test_annotated_frames_and_sheet(void) {
     char header[16];
     run_well("track @small --annotate @drawn --sheet @sheet.ppm");
@@ -467,7 +518,7 @@ static void test_bad_usage(void) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) run_badly(2, cases[i].text, cases[i].line);
     TEST_ASSERT_FALSE(exists(at("@new")));
-    TEST_ASSERT_EQUAL_INT(13, count_files(at("@small")));
+    TEST_ASSERT_EQUAL_INT(14, count_files(at("@small")));
 }
 
 /* ---- Bad input: code 1 for files ---- */
@@ -631,12 +682,14 @@ int main(int argc, char **argv) {
     UNITY_BEGIN();
     RUN_TEST(make_inputs);
     RUN_TEST(test_synth_makes_a_sequence);
+    RUN_TEST(test_synth_labels_absence);
     RUN_TEST(test_synth_repeats_itself);
     RUN_TEST(test_presets_track_the_scene);
     RUN_TEST(test_paper_preset_tracks_girl_and_occluded_face2);
     RUN_TEST(test_csv_has_a_row_a_frame);
     RUN_TEST(test_options_reach_the_tracker);
     RUN_TEST(test_files_instead_of_a_directory);
+    RUN_TEST(test_what_counts);
     RUN_TEST(test_annotated_frames_and_sheet);
     RUN_TEST(test_version_help_and_config);
     RUN_TEST(test_bad_usage);

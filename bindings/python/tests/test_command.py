@@ -67,8 +67,8 @@ def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_help_names_every_sub_command() -> None:
     text = command("--help").stdout
-    assert all(f"\n    {name} " in text for name in ("track", "eval", "bench", "fleet", "gallery"))
-    for name in ("track", "eval", "bench", "fleet", "gallery"):
+    assert all(f"\n    {name} " in text for name in ("track", "eval", "recovery", "bench", "fleet", "gallery"))
+    for name in ("track", "eval", "recovery", "bench", "fleet", "gallery"):
         assert command(name, "--help").returncode == 0
     assert command("--version").stdout == f"asttrack {__version__}\n"
 
@@ -88,6 +88,7 @@ def test_help_names_every_sub_command() -> None:
         (["track", "x", "--box", "1,2,3,4", "--out", "a.gif"], "a.gif: the name of a video must end in .mp4 or .avi or .mkv"),
         (["track", "x", "--particles"], "--particles: draws into the video of --out"),
         (["track", "x", "--set", "particles=many"], "particles=many: not an integer"),
+        (["recovery", "--events", "fog:5"], "fog:5: not an event: occlusion:FRAMES, leave:FRAMES, cut:FRAMES"),
         (["bench", "--seconds", "0"], "--seconds: 0: not a number of seconds"),
         (["fleet", "x", "--out", "a.txt"], "a.txt: the name of a table must end in .csv or .parquet"),
         (["gallery", "x", "--frames", "9"], "--frames: at least 80"),
@@ -237,15 +238,27 @@ def test_eval_prints_a_table_and_writes_everything(scene: Path, tmp_path: Path) 
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
-    table, robustness, worth, written = (
+    table, known, robustness, worth, written = (
         part for part in done.stdout.split("\n\n") if part.count("\n") > 1 or part.startswith("written")
     )
     assert [line.split()[:2] for line in table.splitlines()] == [["scene", "base"], ["scene", "half"], ["scene", "medianflow"]]
+    assert [line.split()[:2] for line in known.splitlines()] == [line.split()[:2] for line in table.splitlines()]
     assert robustness.splitlines()[0].split()[-1] == "12"
     assert [line.split()[0] for line in worth.splitlines()] == ["base", "half", "medianflow"]
     assert written.startswith(f"written: {out}/results.csv")
-    assert sorted(path.name for path in out.iterdir()) == ["report.html", "results.csv", "results.json", "tracks.csv"]
+    names = ["ablation.csv", "confidence.csv", "report.html", "results.csv", "results.json", "tables.md", "tracks.csv"]
+    assert sorted(path.name for path in out.iterdir()) == names
     assert len(rows(out / "results.csv")) == 2 + 2 + 1 + 3 * 12
+    assert len(rows(out / "confidence.csv")) == 2 * (2 + 2 + 1)
+    base, half, peer = rows(out / "ablation.csv")
+    assert (base["variant"], half["variant"], peer["variant"]) == ("base", "half", "medianflow")
+    assert (base["centre_error_change"], half["precision_low"] != "") == ("", True)
+    change = float(half["success_change"])
+    assert float(half["success_change_low"]) <= change <= float(half["success_change_high"])
+    tables = (out / "tables.md").read_text()
+    assert tables.startswith("Made by `python -m asttrack eval ")
+    assert tables.count("\n## ") == 4
+    assert sum(line.startswith("| half | ") for line in tables.splitlines()) == 1
     assert len(rows(out / "tracks.csv")) == (2 + 2 + 1 + 3 * 12) * COUNT
     conditions = json.loads((out / "results.json").read_text())["conditions"]
     assert conditions["command"].startswith("python -m asttrack eval ")
@@ -267,7 +280,10 @@ def test_eval_runs_what_it_can_and_tells_the_rest(scene: Path, tmp_path: Path) -
     assert "absent: no such directory" in lines[0]
     assert f"short: {COUNT} frames but 2 lines of ground truth: evaluated on the first 2" in lines[1]
     assert "00003.pgm: not a picture that OpenCV reads, or damaged" in lines[2]
-    assert [line.split()[0] for line in done.stdout.splitlines() if line] == ["sequence", "scene", "short", "mean"]
+    words = [line.split()[0] for line in done.stdout.splitlines() if line]
+    assert [word for word in words if not word.startswith(("one-pass", "confidence"))] == [
+        "sequence", "scene", "short", "mean", "sequence", "scene", "short", "all",
+    ]  # fmt: skip
 
 
 def test_eval_without_contrib_runs_the_other_trackers(

@@ -16,7 +16,7 @@ from asttrack.evaluation.results import Evaluation, measure
 from asttrack.evaluation.sequence import Sequence
 from asttrack.evaluation.store import write_results
 from asttrack.evaluation.summary import FIGURES, ablation, one_pass_rows, spatial_rows
-from asttrack.evaluation.tables import ablation_table, align, figures_table
+from asttrack.evaluation.tables import ablation_table, align, figures_table, markdown
 from asttrack.evaluation.trackers import AsttrackSpec, parse_trackers
 from asttrack.failures import DataError
 from header import REPOSITORY
@@ -96,7 +96,7 @@ def test_an_ablation_compares_seed_by_seed_with_the_first() -> None:
     assert second.gains is not None
     gain = second.gains["centre_error"]
     assert (gain.middle, gain.low, gain.high) == (2.5, 2, 3)
-    text = ablation_table([first, second])
+    text = align(ablation_table([first, second]))
     alone = ablation(made({**runs, ("s", "csrt", 1, ONE_PASS.name): 5.0}, "asttrack,csrt,asttrack:tiny", "s"))[1].gains
     assert alone is not None
     # One run, as it draws no random numbers, stands against every seed.
@@ -107,10 +107,14 @@ def test_an_ablation_compares_seed_by_seed_with_the_first() -> None:
 
 def test_a_table_has_a_block_a_sequence_and_the_mean() -> None:
     runs = one_pass(("s", "asttrack", 1, 10), ("s", "asttrack", 2, 30), ("t", "asttrack", 1, 2), ("t", "asttrack", 2, 4))
-    text = figures_table(one_pass_rows(made(runs, "asttrack", "s,t")))
+    lines = figures_table(one_pass_rows(made(runs, "asttrack", "s,t")))
+    text = align(lines)
     assert [line.split("  ")[0] for line in text.splitlines()] == ["sequence", "", "s", "", "t", "", "mean of 2"]
     assert "20.0 [10.0 30.0]" in text
     assert "0.50 [0.00 1.00]" in text
+    heads, rule, *rows = markdown(lines).splitlines()
+    assert [len(line.split(" | ")) for line in (heads, rule, *rows)] == [len(lines[0])] * 5
+    assert rows[0].startswith("| s | asttrack | 20.0 [10.0 30.0] | ")
 
 
 def test_columns_are_aligned() -> None:
@@ -203,6 +207,12 @@ def test_a_list_of_variants_that_is_none_is_refused(tmp_path: Path, text: str, m
         read_variants(path)
     with pytest.raises(DataError, match="No such file"):
         read_variants(tmp_path / "absent.toml")
+
+
+def test_the_ablation_of_the_documentation_is_legal_and_each_variant_differs() -> None:
+    variants = read_variants(REPOSITORY / "docs" / "ablation.toml")
+    configurations = [variant.make(1).tracker.config for variant in variants]
+    assert all(one != other for place, one in enumerate(configurations) for other in configurations[:place])
 
 
 def test_the_list_in_the_documentation_is_one(tmp_path: Path) -> None:

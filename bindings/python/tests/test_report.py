@@ -138,7 +138,13 @@ def test_names_are_shown_as_they_are(page: str) -> None:
     assert "<two>" not in page
     for label in TRACKERS.split(","):
         assert label in text
-    for heading in ("Over all sequences", "When the first box is a little off", "What each part is worth", "How this was measured"):
+    for heading in (
+        "Over all sequences",
+        "Does it know when it is wrong?",
+        "When the first box is a little off",
+        "What each part is worth",
+        "How this was measured",
+    ):
         assert heading in text
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from asttrack import __version__
-from asttrack.command import bench, evaluate, fleet, gallery, track
+from asttrack.command import bench, evaluate, fleet, gallery, recovery, track
 from asttrack.command.speech import say
 from asttrack.failures import DataError, UsageError
 
@@ -39,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
     )
     whole.add_argument("--version", action="version", version=f"asttrack {__version__}")
     commands = whole.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for module in (track, evaluate, bench, fleet, gallery):
+    for module in (track, evaluate, recovery, bench, fleet, gallery):
         module.add(commands)
     return whole
 

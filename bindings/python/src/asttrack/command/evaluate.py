@@ -43,6 +43,12 @@ def add(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None
     )
     parser.add_argument("--ablation", metavar="FILE", type=Path, help="TOML list of variants, each compared with the first one")
     parser.add_argument(
+        "--runs",
+        metavar="DIR",
+        type=Path,
+        help="keep each finished run in DIR, and take from it those that are there: an evaluation that was ended goes on",
+    )
+    parser.add_argument(
         "--out", metavar="DIR", type=Path, help="where to write results.csv, tracks.csv, results.json and report.html"
     )
     parser.set_defaults(run=run)
@@ -51,6 +57,7 @@ def add(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None
 def run(arguments: argparse.Namespace) -> int:
     """Does it; the exit code."""
     from asttrack.evaluation.evaluate import evaluate
+    from asttrack.evaluation.kept_runs import KeptRuns
     from asttrack.evaluation.sequence import find_sequences
     from asttrack.opencv import quiet
     from asttrack.output import make_directory
@@ -66,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise DataError("nothing to evaluate")
     if arguments.out is not None:
         make_directory(arguments.out)
+    kept = KeptRuns(arguments.runs) if arguments.runs is not None else None
     for note in (note for sequence in sequences for note in sequence.notes):
         say(note)
     evaluation, interrupted = evaluate(
@@ -75,6 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         jobs=arguments.jobs,
         spatial=arguments.sre,
         progress=partial(shown, unit="run"),
+        kept=kept,
     )
     for failure in evaluation.failures:
         say(failure)
@@ -122,18 +131,10 @@ def publish(evaluation: "Evaluation", directory: Path | None, compare: bool) -> 
     """Prints the tables and writes the files. Raises DataError."""
     from asttrack.evaluation.report import render
     from asttrack.evaluation.store import write_results
-    from asttrack.evaluation.summary import ablation, one_pass_rows, spatial_rows
-    from asttrack.evaluation.tables import ablation_table, figures_table
+    from asttrack.evaluation.tables import align, tables
     from asttrack.output import write_text
 
-    print(figures_table(one_pass_rows(evaluation)))
-    robustness = spatial_rows(evaluation)
-    if robustness:
-        print("\nspatial robustness: mean [least greatest] over the shifted and scaled first boxes\n")
-        print(figures_table(robustness))
-    if compare:
-        print("\nwhat each variant is worth over the sequences, against the first, seed by seed\n")
-        print(ablation_table(ablation(evaluation)))
+    print("\n\n".join(f"{title}\n\n{align(lines)}" for title, lines in tables(evaluation, compare)))
     if directory is not None:
         paths = write_results(evaluation, directory, compare)
         write_text(directory / "report.html", render(evaluation, compare))

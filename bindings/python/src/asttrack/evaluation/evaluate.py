@@ -1,9 +1,10 @@
 """An evaluation from sequences and trackers to runs: plans it, runs it in processes, keeps what is finished."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
 from contextlib import closing
 
 from asttrack.evaluation.conditions import conditions
+from asttrack.evaluation.kept_runs import KeptRuns
 from asttrack.evaluation.processes import run_each
 from asttrack.evaluation.protocol import Run, Task, plan, run
 from asttrack.evaluation.results import Evaluation, measure
@@ -15,7 +16,14 @@ Progress = Callable[[Iterable[tuple[Task, Run | Exception]], int], Iterable[tupl
 
 
 def evaluate(
-    sequences: list[Sequence], trackers: list[TrackerSpec], *, seeds: int, jobs: int, spatial: bool, progress: Progress
+    sequences: list[Sequence],
+    trackers: list[TrackerSpec],
+    *,
+    seeds: int,
+    jobs: int,
+    spatial: bool,
+    progress: Progress,
+    kept: KeptRuns | None = None,
 ) -> tuple[Evaluation, bool]:
     """Runs every tracker on every sequence.
 
@@ -26,13 +34,14 @@ def evaluate(
         jobs: processes at a time.
         spatial: whether also from the twelve shifted and scaled first boxes.
         progress: passes the outcomes on, and may show that they come.
+        kept: where finished runs are kept, and taken from instead of running them again; None keeps none.
 
     Returns:
         The evaluation, and whether an interrupt from the keyboard ended it early.
     """
     tasks = plan(sequences, trackers, seeds, spatial)
     evaluation = Evaluation(sequences, trackers, conditions(jobs), planned=len(tasks))
-    outcomes = run_each(run, tasks, jobs, preload=["asttrack.evaluation.protocol"])
+    outcomes = _outcomes(tasks, jobs, kept)
     interrupted = False
     try:
         with closing(outcomes):
@@ -42,6 +51,22 @@ def evaluate(
         interrupted = True
     evaluation.settle()
     return evaluation, interrupted
+
+
+def _outcomes(tasks: list[Task], jobs: int, kept: KeptRuns | None) -> Generator[tuple[Task, Run | Exception], None, None]:
+    """The kept runs at once, the others as they are done."""
+    missing = []
+    for task in tasks:
+        done = kept.find(task) if kept is not None else None
+        if done is not None:
+            yield task, done
+        else:
+            missing.append(task)
+    with closing(run_each(run, missing, jobs, preload=["asttrack.evaluation.protocol"])) as coming:
+        for task, outcome in coming:
+            if kept is not None and isinstance(outcome, Run) and outcome.error is None:
+                kept.keep(task, outcome)
+            yield task, outcome
 
 
 def _keep(evaluation: Evaluation, task: Task, outcome: Run | Exception) -> None:

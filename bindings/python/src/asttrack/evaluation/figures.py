@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from asttrack.evaluation.metrics import OVERLAPS, RADII, RADIUS, Floats, precision_curve, success_curve
 from asttrack.evaluation.results import Evaluation, mean_curve
+from asttrack.evaluation.summary import tracker_reliability
 
 PALETTE = (
     "#e4572e",
@@ -64,6 +65,26 @@ def _curve_chart(name: str, x: Floats, lines: Many[Floats | None], across: str, 
                 _line(axes, rank, x, line, 1.8)
         axes.set(xlim=(x[0], x[-1]), ylim=(0, 1.01), xlabel=across, ylabel=upwards)
         return _svg(figure, f"{upwards}, by {across}")
+
+
+def reliability_chart(evaluation: Evaluation) -> str:
+    """Share of right frames by score, of the trackers that give one; empty when none does."""
+    found = [(rank, tracker_reliability(evaluation, label)) for rank, label in enumerate(evaluation.labels)]
+    scored = [(rank, line) for rank, line in found if line.frames.any()]
+    if not scored:
+        return ""
+    with _style("reliability"):
+        figure = Figure(figsize=(5.4, 3.7), layout="constrained")
+        axes = figure.add_subplot()
+        axes.plot([0, 1], [0, 1], color=_INK, alpha=0.5, linewidth=0.8, linestyle=(0, (4, 3)))
+        for rank, line in reversed(scored):
+            some = line.frames > 0
+            _line(axes, rank, line.score[some], line.right[some], 1.8)
+            area = 6 + 150 * line.frames[some] / line.frames.sum()
+            dots = axes.scatter(line.score[some], line.right[some], s=area, color=colour(rank), linewidths=0, zorder=4)
+            dots.set_gid(f"tracker-{rank}")
+        axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="score", ylabel="share of right frames")
+        return _svg(figure, "share of right frames, by score")
 
 
 def errors_over_time(evaluation: Evaluation, sequence: str) -> str:

@@ -2,19 +2,35 @@
 
 import math
 from collections.abc import Iterable
+from collections.abc import Sequence as Many
 from html import escape
 from importlib import resources
+from itertools import pairwise
 from string import Template
 
 import numpy as np
 
 from asttrack.evaluation.bag_pictures import ModelPicture
-from asttrack.evaluation.figures import colour, curves, errors_over_time
+from asttrack.evaluation.confidence import BINS, WRONG
+from asttrack.evaluation.figures import colour, curves, errors_over_time, reliability_chart
 from asttrack.evaluation.film import Still, jpeg_uri, png_uri, strip
 from asttrack.evaluation.protocol import SPATIAL
 from asttrack.evaluation.results import Evaluation
 from asttrack.evaluation.sequence import Sequence
-from asttrack.evaluation.summary import FIGURES, Figure, Row, Spread, Worth, ablation, one_pass_rows, spatial_rows
+from asttrack.evaluation.summary import (
+    ABLATED,
+    CONFIDENCE,
+    FIGURES,
+    Figure,
+    Row,
+    Spread,
+    Worth,
+    ablation,
+    confidence_rows,
+    one_pass_rows,
+    spatial_rows,
+    tracker_reliability,
+)
 from asttrack.evaluation.trackers import AsttrackSpec
 
 BAG_SHOWN = 10  # models of a sequence's bag, the last ones
@@ -32,6 +48,7 @@ def render(evaluation: Evaluation, compare: bool) -> str:
     sections = [
         _summary(evaluation, overall),
         _curves(evaluation),
+        _confidence(evaluation),
         _spatial(evaluation),
         _ablation(evaluation) if compare and evaluation.runs else "",
         _sequences(evaluation, rows),
@@ -114,15 +131,15 @@ def _summary(evaluation: Evaluation, overall: list[Row]) -> str:
     return f'<section><h2>{escape(heading)}</h2><p class="quiet">{hint}</p>{table}</section>'
 
 
-def _table(evaluation: Evaluation, rows: Iterable[Row], covered: bool = False) -> str:
+def _table(evaluation: Evaluation, rows: Iterable[Row], covered: bool = False, figures: Many[Figure] = FIGURES) -> str:
     rows = list(rows)
-    columns = [("tracker", 0), *((figure.title, figure.better) for figure in FIGURES), ("runs", 0)]
+    columns = [("tracker", 0), *((figure.title, figure.better) for figure in figures), ("runs", 0)]
     if covered:
         columns.append(("sequences", 0))
-    best = {figure.key: _best(figure, rows) for figure in FIGURES}
+    best = {figure.key: _best(figure, rows) for figure in figures}
     lines = []
     for row in rows:
-        cells = [_cell(row.figures[figure.key], figure, best[figure.key]) for figure in FIGURES]
+        cells = [_cell(row.figures[figure.key], figure, best[figure.key]) for figure in figures]
         cells += [f'<td data-value="{row.repeats}">{row.repeats}</td>']
         if covered:
             cells.append(f'<td data-value="{row.sequences}">{row.sequences}</td>')
@@ -146,7 +163,7 @@ def _line(evaluation: Evaluation, label: str, cells: list[str]) -> str:
 def _best(figure: Figure, rows: list[Row]) -> float | None:
     """The figure that the best row shows; None where there is nothing to be better than, or being better means nothing."""
     known = [round(row.figures[figure.key].middle, figure.digits) for row in rows if not math.isnan(row.figures[figure.key].middle)]
-    if len(known) < 2 or figure.key == "lost":
+    if len(known) < 2 or figure.key == "lost" or not figure.better:
         return None
     return max(known) if figure.better > 0 else min(known)
 
@@ -175,6 +192,42 @@ def _curves(evaluation: Evaluation) -> str:
     )
 
 
+def _confidence(evaluation: Evaluation) -> str:
+    rows = confidence_rows(evaluation)
+    overall = [row for row in rows if row.sequence is None] or rows
+    if not overall:
+        return ""
+    chart = reliability_chart(evaluation)
+    figure = (
+        f'<div class="pair"><figure class="chart">{chart}<figcaption>Reliability: of the frames with such a score, how many are '
+        "right. On the dashed line the score is what it says. A larger dot stands for more frames.</figcaption></figure>"
+        f"{_calibration(evaluation)}</div>"
+    )
+    return (
+        "<section><h2>Does it know when it is wrong?</h2>"
+        f'<p class="quiet">A frame is wrong when the box overlaps the truth by less than {WRONG:g}, or when nothing of the object '
+        "is in view. AUC: how probable it is that a right frame has a higher score than a wrong one, or is called found when the "
+        "wrong one is called lost; 0.5 is chance. A loss is noticed when the tracker calls it lost before it is right again, after "
+        f"so many frames.</p>{_table(evaluation, overall, figures=CONFIDENCE)}{figure if chart else ''}</section>"
+    )
+
+
+def _calibration(evaluation: Evaluation) -> str:
+    """The reliability as a table: a line for each bin of scores, a column for each tracker that gives scores."""
+    columns = [("score", 0)]
+    cells: list[list[str]] = [[] for _ in BINS[1:]]
+    for label in evaluation.labels:
+        found = tracker_reliability(evaluation, label)
+        if not found.frames.any():
+            continue
+        columns.append((f"right, {label}", 0))
+        for line, frames, right in zip(cells, found.frames, found.right, strict=True):
+            share = f"<b>{right:.2f}</b><span class='range'>of {frames:,}</span>" if frames else "-"
+            line.append(f'<td data-value="{right if frames else ""}">{share}</td>')
+    heads = (f'<th scope="row">{low:.1f} to {high:.1f}</th>' for low, high in pairwise(BINS))
+    return _table_of(columns, [f"<tr>{head}{''.join(line)}</tr>" for head, line in zip(heads, cells, strict=True)])
+
+
 def _spatial(evaluation: Evaluation) -> str:
     rows = spatial_rows(evaluation)
     overall = [row for row in rows if row.sequence is None] or rows
@@ -188,10 +241,9 @@ def _spatial(evaluation: Evaluation) -> str:
 
 
 def _ablation(evaluation: Evaluation) -> str:
-    shown = [figure for figure in FIGURES if figure.key != "lost"]
     base, *others = ablation(evaluation)
-    columns = [("tracker", 0), *((figure.title, figure.better) for figure in shown)]
-    lines = [_line(evaluation, worth.tracker, _gain_cells(worth, shown)) for worth in others]
+    columns = [("tracker", 0), *((figure.title, figure.better) for figure in ABLATED)]
+    lines = [_line(evaluation, worth.tracker, _gain_cells(worth)) for worth in others]
     return (
         "<section><h2>What each part is worth</h2>"
         f'<p class="quiet">The change from <b>{escape(base.tracker)}</b> over all sequences, seed by seed: its median, and in grey '
@@ -199,8 +251,8 @@ def _ablation(evaluation: Evaluation) -> str:
     )
 
 
-def _gain_cells(worth: Worth, shown: list[Figure]) -> list[str]:
-    return [_cell(worth.gains[figure.key], figure, None, sign="+") for figure in shown] if worth.gains is not None else []
+def _gain_cells(worth: Worth) -> list[str]:
+    return [_cell(worth.gains[figure.key], figure, None, sign="+") for figure in ABLATED] if worth.gains is not None else []
 
 
 def _sequences(evaluation: Evaluation, rows: list[Row]) -> str:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from asttrack.evaluation.conditions import Conditions
 from asttrack.evaluation.metrics import Accuracy, Floats, accuracy, centre_errors, overlaps
@@ -19,12 +20,14 @@ class Measured:
         run: the run.
         errors: (frames,) centre errors, nan without ground truth.
         shares: (frames,) overlaps, nan without ground truth.
+        absent: (frames,) whether nothing of the object is in view.
         accuracy: the figures.
     """
 
     run: Run
     errors: Floats
     shares: Floats
+    absent: NDArray[np.bool_]
     accuracy: Accuracy
 
     @property
@@ -39,6 +42,7 @@ def measure(run: Run, sequence: Sequence) -> Measured:
         run,
         centre_errors(run.boxes, sequence.truth),
         overlaps(run.boxes, sequence.truth),
+        sequence.absent,
         accuracy(run.boxes, sequence.truth, run.ok),
     )
 

@@ -14,6 +14,7 @@ from asttrack.failures import DataError, unusable
 from asttrack.frames import Frame
 
 TRUTH_NAMES = ("groundtruth.txt", "groundtruth_rect.txt")
+ABSENCE_NAME = "absence.label"
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".ppm", ".tif", ".tiff", ".webp")
 
 
@@ -27,6 +28,7 @@ class Sequence:
         frames: paths of the frames that have a line of ground truth.
         truth: (frames, 4) boxes x, y, w, h in pixels; a row of nan where there is none. The first row is a box.
         notes: what a reader of the figures should know, one line each.
+        labels: (frames,) whether nothing of the object is in view, where a file says so; None without one.
     """
 
     name: str
@@ -34,9 +36,22 @@ class Sequence:
     frames: tuple[Path, ...]
     truth: NDArray[np.float64]
     notes: tuple[str, ...] = ()
+    labels: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         return len(self.frames)
+
+    @property
+    def absent(self) -> NDArray[np.bool_]:
+        """Frames in which there is nothing of the object: by the labels, or else by boxes that are missing.
+
+        Where no two neighbouring frames have boxes, the annotator left frames out, and a missing box says nothing.
+        """
+        if self.labels is not None:
+            return self.labels
+        boxed = ~np.isnan(self.truth[:, 0])
+        sparse = not (boxed[1:] & boxed[:-1]).any()
+        return np.zeros(len(boxed), bool) if sparse else ~boxed
 
     def pictures(self) -> Iterator[Frame]:
         """The frames, grey, oldest first. Raises DataError at one that cannot be read."""
@@ -82,7 +97,8 @@ def read_sequence(directory: Path) -> Sequence:
         notes.append(f"{directory}: {len(frames)} frames but {len(truth)} lines of ground truth: evaluated on the first {count}")
     if count < 2:
         raise DataError(f"{directory}: fewer than two frames with ground truth")
-    return Sequence(directory.resolve().name, directory, tuple(frames[:count]), truth[:count], tuple(notes))
+    labels = _read_absence(directory / ABSENCE_NAME, count)
+    return Sequence(directory.resolve().name, directory, tuple(frames[:count]), truth[:count], tuple(notes), labels)
 
 
 def numbered_pictures(directory: Path) -> list[Path]:
@@ -118,6 +134,19 @@ def read_truth(path: Path) -> NDArray[np.float64]:
     if not lines:
         raise DataError(f"{path}: the file is empty")
     return np.array([_parse_box(line, f"{path}:{number}") for number, line in enumerate(lines, 1)])
+
+
+def _read_absence(path: Path, count: int) -> NDArray[np.bool_] | None:
+    """GOT-10k's labels: a line a frame, 1 where the object is absent, else 0. None where there is no such file."""
+    try:
+        words = path.read_text(encoding="ascii", errors="replace").split()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise unusable(path, error) from error
+    if len(words) < count or not set(words) <= {"0", "1"}:
+        raise DataError(f"{path}: not a line 0 or 1 for each of {count} frames")
+    return np.array([word == "1" for word in words[:count]])
 
 
 def read_grey(path: Path) -> Frame:

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from asttrack.evaluation.confidence import Reliability, confidence, judge, pool, reliability
 from asttrack.evaluation.protocol import ONE_PASS
 from asttrack.evaluation.results import Evaluation, Measured
 
@@ -18,7 +19,7 @@ class Figure:
         key: in files.
         title: in tables.
         digits: after the point.
-        better: 1 when more is better, -1 when less is.
+        better: 1 when more is better, -1 when less is, 0 when neither.
     """
 
     key: str
@@ -38,6 +39,18 @@ FIGURES = (
     Figure("lost", "lost frames", 0, -1),
 )
 ACCURACY = FIGURES[:3]
+ABLATED = FIGURES[:4]
+CONFIDENCE = (
+    Figure("score_auc", "AUC of the score", 3, 1),
+    Figure("flag_auc", "AUC of the flag", 3, 1),
+    Figure("calibration", "calibration error", 3, -1),
+    Figure("wrong", "wrong %", 1, -1),
+    Figure("lost_visible", "lost while visible %", 2, -1),
+    Figure("false_lost", "lost while on it %", 2, -1),
+    Figure("losses", "losses", 0, 0),
+    Figure("noticed", "noticed", 0, 0),
+    Figure("delay", "delay frames", 0, -1),
+)
 
 
 @dataclass(frozen=True)
@@ -54,7 +67,7 @@ class Row:
     """The figures of one tracker on one sequence, or on all.
 
     Attributes:
-        sequence: name; None for the mean over sequences.
+        sequence: name; None for all together.
         tracker: label.
         figures: by key.
         repeats: seeds, or first boxes, that the spread is over.
@@ -70,12 +83,33 @@ class Row:
 
 def one_pass_rows(evaluation: Evaluation) -> list[Row]:
     """Medians and ranges over the seeds: sequences first, the mean over them last."""
-    return _rows(evaluation, evaluation.one_pass, lambda m: m.run.seed, lambda values: float(np.median(values)))
+    return _rows(evaluation, evaluation.one_pass, lambda m: m.run.seed, _median, FIGURES, over_sequences)
 
 
 def spatial_rows(evaluation: Evaluation) -> list[Row]:
     """Means and ranges over the shifted and scaled first boxes; none when there were no such runs."""
-    return _rows(evaluation, evaluation.spatial, lambda m: m.run.start, lambda values: float(np.mean(values)))
+    return _rows(
+        evaluation, evaluation.spatial, lambda m: m.run.start, lambda values: float(np.mean(values)), FIGURES, over_sequences
+    )
+
+
+def confidence_rows(evaluation: Evaluation) -> list[Row]:
+    """Medians and ranges over the seeds: sequences first, the frames of all of them as one last."""
+    return _rows(evaluation, evaluation.one_pass, lambda m: m.run.seed, _median, CONFIDENCE, pooled)
+
+
+def pooled(runs: Iterable[Measured]) -> dict[str, float]:
+    """How well one tracker knows when it is wrong, over the frames of its runs together."""
+    return confidence(pool(map(judge, runs)))
+
+
+def tracker_reliability(evaluation: Evaluation, label: str) -> Reliability:
+    """What the scores of a tracker are worth, over the frames of all its one-pass runs."""
+    runs = evaluation.one_pass(label)
+    if not runs:
+        return reliability(np.empty(0), np.empty(0, bool))
+    judged = pool(map(judge, runs))
+    return reliability(judged.score, judged.wrong)
 
 
 def over_sequences(runs: Iterable[Measured]) -> dict[str, float]:
@@ -109,6 +143,8 @@ def _rows(
     runs_of: Callable[[str, str | None], list[Measured]],
     key: Callable[[Measured], object],
     middle: Callable[[list[float]], float],
+    columns: Iterable[Figure],
+    taken: Callable[[list[Measured]], dict[str, float]],
 ) -> list[Row]:
     names: list[str | None] = [sequence.name for sequence in evaluation.sequences]
     rows = []
@@ -117,8 +153,8 @@ def _rows(
             groups = complete(runs_of(label, name), key)
             if not groups:
                 continue
-            values = [over_sequences(group) for group in groups.values()]
-            figures = {figure.key: spread((value[figure.key] for value in values), middle) for figure in FIGURES}
+            values = [taken(group) for group in groups.values()]
+            figures = {figure.key: spread((value[figure.key] for value in values), middle) for figure in columns}
             covered = len(next(iter(groups.values())))
             rows.append(Row(name, label, figures, len(groups), covered))
     return rows
