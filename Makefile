@@ -14,6 +14,8 @@ BACKEND ?= $(if $(filter yes,$(LAPACKE)),lapacke,builtin)
 LAPACKE ?= $(eval LAPACKE := $(call links,$(lapacke_trial),$(lapacke_libs)))$(LAPACKE)
 # yes or no: is libjpeg there, for the command only (default: tried)
 JPEG ?= $(eval JPEG := $(call links,$(jpeg_trial),-ljpeg))$(JPEG)
+# yes or no: can the compiler aim at this very processor, for the peaks of `make bench` only (default: tried)
+NATIVE ?= $(eval NATIVE := $(call links,int main(void) { return 0; }\n,-march=native -mno-avx512f))$(NATIVE)
 # 1: a warning is an error
 WERROR ?= 0
 # 1: show every command
@@ -32,6 +34,8 @@ SEEDS ?= 5
 JOBS ?= 2
 # Python that makes the virtual environment of the Python tests
 PYTHON ?= python3
+# arguments of `make bench`, such as --quick (make bench BENCH_ARGS=--help lists them)
+BENCH_ARGS ?=
 # most stack that a call into the library may take, bytes
 STACK_CEILING ?= 8192
 # where `make install` puts things
@@ -87,7 +91,8 @@ other_backends := $(filter-out src/linalg_$(BACKEND).c $(if $(filter no,$(LAPACK
 command_sources := $(filter-out examples/minimal.c,$(wildcard examples/*.c))
 test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch])
+bench_sources := $(wildcard bench/*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch])
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -96,8 +101,10 @@ sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=a
 common_flags = $(CFLAGS) -std=c99 -ffp-contract=off -fno-math-errno $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
 lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
 command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
-test_flags = $(command_flags) -iquote src -iquote examples -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
-	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE)
+test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
+	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE) $(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
+bench_flags = $(command_flags) -iquote src -iquote examples $(if $(filter yes,$(LAPACKE)),-DAST_BENCH_LAPACKE) \
+	$(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
 
 link = $(CC) $(CFLAGS) $(sanitizers) $(LDFLAGS)
 lib_libs := $(if $(filter lapacke,$(BACKEND)),$(lapacke_libs)) -lm
@@ -110,6 +117,8 @@ other_objects := $(other_backends:src/%.c=$(BUILDDIR)/obj/static/%.o)
 command_objects := $(command_sources:examples/%.c=$(BUILDDIR)/obj/examples/%.o)
 test_support_objects := $(test_support_sources:tests/%.c=$(BUILDDIR)/obj/tests/%.o) $(BUILDDIR)/obj/unity.o
 test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%)
+bench_objects = $(bench_sources:bench/%.c=$(BUILDDIR)/obj/bench/%.o) \
+	$(if $(filter yes,$(NATIVE)),$(BUILDDIR)/obj/bench/peak_patch_native.o $(BUILDDIR)/obj/bench/peak_patch_narrow.o)
 
 static_lib := $(BUILDDIR)/libasttrack.a
 shared_lib := $(BUILDDIR)/libasttrack.so.$(version)
@@ -117,7 +126,7 @@ shared_lib := $(BUILDDIR)/libasttrack.so.$(version)
 quiet := $(if $(filter 1,$(V)),,@)
 say = $(if $(quiet),@printf '  %-4s %s\n' $(1) $@)
 # Calls this Makefile again with what is already known about the machine.
-again = $(MAKE) --no-print-directory LAPACKE=$(LAPACKE) JPEG=$(JPEG)
+again = $(MAKE) --no-print-directory LAPACKE=$(LAPACKE) JPEG=$(JPEG) NATIVE=$(NATIVE)
 
 # ---- Building ----
 
@@ -133,9 +142,10 @@ examples: $(BUILDDIR)/asttrack $(BUILDDIR)/minimal ## the command `asttrack` and
 # Text files that change when, and only when, what they record changes: objects depend on the flags, links on what is linked.
 $(BUILDDIR)/lib-flags: export recorded = $(CC) $(lib_flags)
 $(BUILDDIR)/flags: export recorded = $(CC) $(test_flags)
+$(BUILDDIR)/bench-flags: export recorded = $(CC) $(bench_flags) $(lib_flags)
 $(BUILDDIR)/sources: export recorded = $(link) $(lib_sources) $(other_backends) $(command_sources) \
 	$(test_support_sources) $(test_libs)
-$(BUILDDIR)/lib-flags $(BUILDDIR)/flags $(BUILDDIR)/sources: FORCE
+$(BUILDDIR)/lib-flags $(BUILDDIR)/flags $(BUILDDIR)/bench-flags $(BUILDDIR)/sources: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' "$$recorded" | cmp -s - $@ || printf '%s\n' "$$recorded" > $@
 .PHONY: FORCE
@@ -157,6 +167,18 @@ $(BUILDDIR)/obj/tests/%.o: tests/%.c $(BUILDDIR)/flags | $(UNITY_DIR)/src/unity.
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(quiet)$(CC) $(test_flags) -c -o $@ $<
+$(BUILDDIR)/obj/bench/%.o: bench/%.c $(BUILDDIR)/bench-flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(bench_flags) $(own_flags) -c -o $@ $<
+$(BUILDDIR)/obj/bench/peak_patch_%.o: bench/peak_patch.c $(BUILDDIR)/bench-flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(bench_flags) $(own_flags) -DPEAK_NAME=peak_$* -c -o $@ $<
+$(BUILDDIR)/obj/bench/machine.o: own_flags = -DBENCH_FLAGS='"$(strip $(filter-out -MMD -MP -Iinclude,$(lib_flags)))"'
+$(BUILDDIR)/obj/bench/peak_patch.o: own_flags = -ffp-contract=fast
+$(BUILDDIR)/obj/bench/peak_patch_native.o: own_flags = -ffp-contract=fast -march=native
+$(BUILDDIR)/obj/bench/peak_patch_narrow.o: own_flags = -ffp-contract=fast -march=native -mno-avx512f
 $(BUILDDIR)/obj/unity.o: $(UNITY_DIR)/src/unity.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
@@ -193,6 +215,18 @@ demo: $(BUILDDIR)/asttrack ## render a scene (or take FRAMES=directory), track i
 	@echo "boxes:   $(BUILDDIR)/demo/track.csv"
 	@echo "picture: $(demo_sheet)"
 
+# ---- Speed ----
+
+.PHONY: bench
+bench_program := $(BUILDDIR)/asttrack-bench
+# Which sources these are, where git knows.
+commit = $(shell git describe --always --dirty --abbrev=12 --exclude '*' 2>/dev/null)
+bench: $(bench_program) ## measure speed: ratios, growth, roofline, instructions; BENCH_ARGS=--quick for a rough run
+	@$(bench_program) --out $(BUILDDIR)/bench.json $(if $(commit),--commit $(commit)) $(BENCH_ARGS)
+$(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -pthread -o $@ $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+
 # ---- Tests ----
 
 .PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan
@@ -219,11 +253,15 @@ $(BUILDDIR)/libexamples.a: $(command_objects) $(BUILDDIR)/sources
 	@rm -f $@
 	$(call say,LIB)
 	$(quiet)$(AR) rcs $@ $(command_objects)
+$(BUILDDIR)/libbench.a: $(bench_objects) $(BUILDDIR)/sources
+	@rm -f $@
+	$(call say,LIB)
+	$(quiet)$(AR) rcs $@ $(bench_objects)
 $(test_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
-		$(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
+		$(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	@mkdir -p $(@D)
 	$(call say,LINK)
-	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
 
 unity: $(UNITY_DIR)/src/unity.c ## fetch the C test framework
 $(UNITY_DIR)/src/unity.c:
@@ -304,8 +342,9 @@ accuracy-tables: .venv/installed $(BUILDDIR)/asttrack ## measure what docs/accur
 
 lint: ## static analysis of the C sources
 	@$(CLANG_TIDY) --version >/dev/null || { echo "no $(CLANG_TIDY): on Debian, apt-get install clang-tidy" >&2; exit 1; }
-	@printf '%s\n' $(filter-out $(if $(filter no,$(LAPACKE)),src/linalg_lapacke.c),$(wildcard src/*.c examples/*.c)) | \
-	    xargs -P $$(nproc) -n 1 sh -c '$(CLANG_TIDY) --quiet "$$0" -- -std=c99 -Iinclude -DAST_LINALG=ast_linalg_$(BACKEND) \
+	@printf '%s\n' $(filter-out $(if $(filter no,$(LAPACKE)),src/linalg_lapacke.c),$(wildcard src/*.c examples/*.c bench/*.c)) | \
+	    xargs -P $$(nproc) -n 1 sh -c '$(CLANG_TIDY) --quiet "$$0" -- -std=c99 -Iinclude -iquote src -iquote examples \
+	    -DAST_LINALG=ast_linalg_$(BACKEND) \
 	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
 
 format: ## lay out the C sources
