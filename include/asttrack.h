@@ -174,9 +174,9 @@ typedef struct ast_config {
     int32_t scoring;    /* AST_SCORING_* */
 
     /* Guard: what the tracker learns from, and what it does when the object is gone */
-    float guard; /* least likeness to the start, relative to the usual one, of a frame that is learned from, 0 .. 1; 0: no guard */
-    float
-        reacquire; /* the same of a frame that ends AST_LOST, 0 .. 1; while lost the search widens around the last good estimate */
+    float guard;  /* least likeness to the start, relative to the usual one, of a frame that is learned from, 0 .. 1; 0: no guard */
+    float recall; /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
+    float reacquire; /* least likeness to the start that ends AST_LOST, beside recall's, 0 .. 1 */
 
     /* Confidence */
     float score_uncertain; /* below this score a frame is doubtful, 0 .. 1 */
@@ -256,10 +256,11 @@ AST_API AST_CHECKED int ast_start_sequence(ast_tracker *t, const ast_frame *fram
 enum { AST_TRACKING = 0, AST_UNCERTAIN = 1, AST_LOST = 2 };
 
 typedef struct ast_result {
-    ast_box box;    /* the object's box, pixels; may reach beyond the frame; while a guard says lost: where it was last */
-    float scale;    /* relative to the first box */
-    float score;    /* confidence, 0 (nothing like the object) .. 1 (as seen before) */
-    float distance; /* the winner's least distance to a model (paper eq. 2); can be negative with background_ratio */
+    ast_box
+        box; /* the object's box, pixels; may reach beyond the frame; with AST_LOST: the likeliest place, which may be anything */
+    float scale;               /* relative to the first box */
+    float score;               /* confidence, 0 (nothing like the object) .. 1 (as seen before) */
+    float distance;            /* the winner's least distance to a model (paper eq. 2); can be negative with background_ratio */
     float effective_particles; /* effective sample size 1 / sum w^2, 1 .. N */
     int32_t status;            /* AST_TRACKING, AST_UNCERTAIN or AST_LOST */
     int32_t best;              /* index of the winning particle */

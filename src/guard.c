@@ -15,49 +15,78 @@
 #define SEARCH_STEPS 40
 
 void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start) {
-    guard->usual = 0.0f;
+    guard->usual.start = guard->usual.known = 0.0f;
     guard->low = 0;
     guard->lost = 0;
     guard->good = *start;
 }
 
-float ast_guard_likeness(const float *vector, const float *anchor, const float *origin, int dim) {
-    ast_real cross = 0, square = 0, anchor_square = 0;
+float ast_guard_likeness(const float *vector, const float *other, const float *origin, int dim) {
+    ast_real cross = 0, square = 0, other_square = 0;
     for (int d = 0; d < dim; d++) {
         const ast_real at = origin == NULL ? 0 : (ast_real)origin[d];
-        const ast_real v = (ast_real)vector[d] - at, a = (ast_real)anchor[d] - at;
-        cross += v * a;
+        const ast_real v = (ast_real)vector[d] - at, o = (ast_real)other[d] - at;
+        cross += v * o;
         square += v * v;
-        anchor_square += a * a;
+        other_square += o * o;
     }
-    return square > 0 && anchor_square > 0 ? (float)(cross / ast_sqrt(square * anchor_square)) : 0.0f;
+    return square > 0 && other_square > 0 ? (float)(cross / ast_sqrt(square * other_square)) : 0.0f;
+}
+
+struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
+                                             const float *origin) {
+    const float start = ast_guard_likeness(vector, anchor, origin, bag->dim);
+    struct ast_resemblance found = {start, start};
+    for (int j = 0; j < bag->count; j++) {
+        const float likeness = ast_guard_likeness(vector, ast_bag_mean(bag, j), origin, bag->dim);
+        if (likeness > found.known) found.known = likeness;
+    }
+    return found;
+}
+
+static float towards(float mean, float value) {
+    return mean + USUAL_RATE * (value - mean);
 }
 
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
-                                float likeness, float spread) {
+                                const struct ast_resemblance *resemblance, float spread) {
     struct ast_guard next = *guard;
-    const float usual = guard->usual > 0.0f ? guard->usual : likeness;
-    const int doubtful = guard->lost ? likeness < cfg->reacquire * usual : likeness < cfg->guard * usual && spread > DECIDED_SPREAD;
+    const struct ast_resemblance usual = guard->usual.start > 0.0f ? guard->usual : *resemblance;
+    const int unknown = resemblance->known < cfg->recall * usual.known;
+    const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * usual.start
+                                     : unknown && resemblance->start < cfg->guard * usual.start && spread > DECIDED_SPREAD;
     if (cfg->guard > 0.0f && doubtful) {
         if (next.low < AST_GUARD_LONG) next.low++;
         next.lost = guard->lost || next.low >= cfg->lost_after;
         return next;
     }
-    next.usual = usual + USUAL_RATE * (likeness - usual);
+    next.usual.start = towards(usual.start, resemblance->start);
+    next.usual.known = towards(usual.known, resemblance->known);
     next.low = 0;
     next.lost = 0;
     next.good = *estimate;
     return next;
 }
 
-ast_config ast_guard_walk(const struct ast_guard *guard, const ast_config *cfg, float object_size) {
-    ast_config walk = *cfg;
-    if (!guard->lost) return walk;
-    for (int32_t f = 0; f < guard->low && f < SEARCH_STEPS; f++) {
-        if (walk.walk_x < object_size) walk.walk_x *= SEARCH_GROWTH;
-        if (walk.walk_y < object_size) walk.walk_y *= SEARCH_GROWTH;
+void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud) {
+    for (int i = 1; guard->lost && i < cloud->count; i += 2) ast_cloud_set(cloud, i, guard->good);
+}
+
+/* The walk's growth on one axis: SEARCH_GROWTH a frame, until a deviation of `walk` pixels covers the object. */
+static float growth(const struct ast_guard *guard, float walk, float object_size) {
+    float factor = 1.0f;
+    for (int32_t f = 0; f < guard->low && f < SEARCH_STEPS && walk * factor < object_size; f++) factor *= SEARCH_GROWTH;
+    return factor;
+}
+
+void ast_guard_widen(const struct ast_guard *guard, const ast_config *cfg, const ast_frame *frame, float object_size,
+                     struct ast_cloud *cloud) {
+    const float wider = growth(guard, cfg->walk_x, object_size), higher = growth(guard, cfg->walk_y, object_size);
+    for (int i = 1; guard->lost && i < cloud->count; i += 2) {
+        const struct ast_state moved = {guard->good.x + wider * (cloud->x[i] - guard->good.x),
+                                        guard->good.y + higher * (cloud->y[i] - guard->good.y), cloud->scale[i]};
+        ast_cloud_set(cloud, i, ast_state_within(moved, cfg, frame));
     }
-    return walk;
 }
 
 int32_t ast_guard_status(const struct ast_guard *guard, const ast_config *cfg, float score) {

@@ -1,34 +1,50 @@
 /* The guard: which frames the tracker may learn from, and where it searches when the object is gone.
  *
- * A bag that learns an occluder prefers it from then on, and nothing measured on the bag notices. So the likeness to the object as it
- * was given at the start, which cannot drift, is compared with what it usually is. */
+ * A bag that learns an occluder prefers it from then on, and nothing measured on the bag alone notices. So two resemblances of the
+ * winner are compared with what they usually are: that to the object as it was given at the start, which cannot drift, and that to
+ * the likest model of the bag, which knows the object's looks since. An object that turns keeps the second, one that comes back keeps
+ * the first; a frame in which both fall is not learned from. */
 #ifndef AST_GUARD_H
 #define AST_GUARD_H
 
 #include "asttrack.h"
+#include "bag.h"
 #include "particles.h"
 
 /* Frames in a row beyond which they are not counted. */
 enum { AST_GUARD_LONG = 10000 };
 
+/* Cosines about the background's mean (about zero without a background), -1 .. 1. */
+struct ast_resemblance {
+    float start; /* to the object's looks at the start */
+    float known; /* to the likest of these and of the bag's means */
+};
+
 struct ast_guard {
-    float usual;           /* running mean of the likeness over trusted frames; 0 before the first */
-    int32_t low;           /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
-    int32_t lost;          /* 1: searching around the last trusted estimate */
-    struct ast_state good; /* the last trusted estimate */
+    struct ast_resemblance usual; /* running means over trusted frames; start 0 before the first */
+    int32_t low;                  /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
+    int32_t lost;                 /* 1: following and searching, without learning */
+    struct ast_state good;        /* the last trusted estimate */
 };
 
 /* Nothing seen yet but the start's estimate. */
 void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start);
-/* Cosine between a vector and the anchor, both about an origin (NULL: zero); 0 where one of them is at the origin. */
-float ast_guard_likeness(const float *vector, const float *anchor, const float *origin, int dim);
-/* The guard after a frame whose winner has this likeness and whose cloud this spread (in object sizes). A frame is not trusted when its
- * likeness falls below cfg->guard of the usual while the cloud is undecided; lost_after such frames make the object lost, until a
- * likeness of cfg->reacquire of the usual. With cfg->guard == 0 every frame is trusted. */
+/* Cosine between a vector and another, both about an origin (NULL: zero); 0 where one of them is at the origin. */
+float ast_guard_likeness(const float *vector, const float *other, const float *origin, int dim);
+struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
+                                             const float *origin);
+/* The guard after a frame whose winner resembles so and whose cloud has this spread (in object sizes). A frame is not trusted when its
+ * likeness to the start falls below cfg->guard and that to what is known below cfg->recall of the usual, while the cloud is undecided;
+ * lost_after such frames make the object lost, until likenesses of cfg->reacquire and cfg->recall of the usual. With cfg->guard == 0
+ * every frame is trusted. */
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
-                                float likeness, float spread);
-/* The configuration's walk, or while lost one that grows with every frame up to the object's size (pixels). */
-ast_config ast_guard_walk(const struct ast_guard *guard, const ast_config *cfg, float object_size);
+                                const struct ast_resemblance *resemblance, float spread);
+/* While lost, half of the particles go on following what was likeliest, since it may still be the object in a new guise; the other
+ * half searches around the last trusted estimate. This gives the searchers their place, before the walk; */
+void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud);
+/* and this, after it, widens their walk, with every frame up to the object's size (pixels). */
+void ast_guard_widen(const struct ast_guard *guard, const ast_config *cfg, const ast_frame *frame, float object_size,
+                     struct ast_cloud *cloud);
 /* AST_LOST while lost, AST_UNCERTAIN for a frame that is not trusted or scores below score_uncertain, else AST_TRACKING. */
 int32_t ast_guard_status(const struct ast_guard *guard, const ast_config *cfg, float score);
 

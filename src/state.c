@@ -91,7 +91,8 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_int(c, &t->confidence.status, AST_TRACKING, AST_LOST);
     code_int(c, &t->confidence.low, 0, t->cfg.lost_after);
 
-    code_float(c, &t->guard.usual, -SHARE_LIMIT, SHARE_LIMIT);
+    code_float(c, &t->guard.usual.start, -SHARE_LIMIT, SHARE_LIMIT);
+    code_float(c, &t->guard.usual.known, -SHARE_LIMIT, SHARE_LIMIT);
     code_int(c, &t->guard.low, 0, AST_GUARD_LONG);
     code_int(c, &t->guard.lost, 0, 1);
     code_float(c, &t->guard.good.x, -limit, limit);

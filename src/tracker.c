@@ -316,17 +316,14 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
     look(t, frame, left, top, right, bottom, t->estimate.scale);
 }
 
-/* The frame's candidates: the last cloud's, moved on; while the object is lost, a growing cloud around where it was last seen. */
+/* The frame's candidates: the last cloud's, moved on; while the object is lost, half of them search where it was last seen. */
 static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_random *random) {
-    const float size = ast_sqrtf(t->box_width * t->box_height) * t->estimate.scale;
-    const ast_config walk = ast_guard_walk(&t->guard, &t->cfg, size);
-    if (t->guard.lost) {
-        ast_cloud_gather(&t->proposal, &t->guard.good);
-    } else {
-        ast_cloud_resample(&t->cloud, &t->proposal, random);
-        ast_cloud_shift(&t->proposal, t->cfg.velocity * t->velocity_x, t->cfg.velocity * t->velocity_y);
-    }
-    ast_cloud_diffuse(&t->proposal, &walk, frame, random);
+    const float size = ast_sqrtf(t->box_width * t->box_height) * t->guard.good.scale;
+    ast_cloud_resample(&t->cloud, &t->proposal, random);
+    ast_cloud_shift(&t->proposal, t->cfg.velocity * t->velocity_x, t->cfg.velocity * t->velocity_y);
+    ast_guard_gather(&t->guard, &t->proposal);
+    ast_cloud_diffuse(&t->proposal, &t->cfg, frame, random);
+    ast_guard_widen(&t->guard, &t->cfg, frame, size, &t->proposal);
     if (t->cfg.incumbent) ast_cloud_set(&t->proposal, 0, ast_state_within(t->estimate, &t->cfg, frame));
     look_at_cloud(t, frame);
 }
@@ -366,9 +363,10 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     float *vector = t->tile;
     describe(t, &found_box, vector);
     const float score = ast_confidence_score(vector, t->anchor, &t->bag);
-    const float likeness = ast_guard_likeness(vector, t->anchor, t->background.size > 0 ? t->background.mean : NULL, t->dim);
+    const struct ast_resemblance resemblance =
+        ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
     const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
-    const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, likeness, spread);
+    const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
     const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
     const int model_due = trusted && (first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval));
@@ -377,12 +375,11 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     if (error != AST_OK) return error;
 
     const int was_lost = t->guard.lost;
-    const struct ast_state estimate = guard.lost ? guard.good : found;
     t->random = random;
     t->frame++;
-    t->velocity_x = trusted && !was_lost ? 0.5f * (t->velocity_x + estimate.x - t->estimate.x) : 0.0f;
-    t->velocity_y = trusted && !was_lost ? 0.5f * (t->velocity_y + estimate.y - t->estimate.y) : 0.0f;
-    t->estimate = estimate;
+    t->velocity_x = trusted && !was_lost ? 0.5f * (t->velocity_x + found.x - t->estimate.x) : 0.0f;
+    t->velocity_y = trusted && !was_lost ? 0.5f * (t->velocity_y + found.y - t->estimate.y) : 0.0f;
+    t->estimate = found;
     t->confidence = ast_confidence_next(t->confidence, &t->cfg, score);
     if (t->cfg.guard > 0.0f) t->confidence.status = ast_guard_status(&guard, &t->cfg, score);
     t->guard = guard;
@@ -396,8 +393,8 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     }
 
     if (result != NULL) {
-        result->box = window_of(t, &estimate);
-        result->scale = estimate.scale;
+        result->box = found_box;
+        result->scale = found.scale;
         result->score = score;
         result->distance = nearest;
         result->effective_particles = ast_cloud_effective(&t->cloud);
