@@ -19,7 +19,7 @@ def find() -> Path:
 
 def run(*words: object) -> str:
     """What it prints."""
-    done = subprocess.run([find(), *map(str, words)], capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run([find(), *map(str, words)], capture_output=True, text=True, check=False, timeout=400)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

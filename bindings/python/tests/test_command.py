@@ -33,7 +33,7 @@ def command(*words: object, limit: int | None = None, without: str | None = None
     whole = [sys.executable, *start, *map(str, words)]
     if limit is not None:
         whole = ["sh", "-c", f'ulimit -f {2 * limit}; exec "$0" "$@"', *whole]
-    return subprocess.run(whole, capture_output=True, text=True, check=False, timeout=120)
+    return subprocess.run(whole, capture_output=True, text=True, check=False, timeout=400)
 
 
 def complaint(done: subprocess.CompletedProcess[str], code: int) -> str:

@@ -22,7 +22,7 @@ def evaluated(directory: Path, out: Path, options: list[str]) -> dict[str, str]:
         env={**os.environ, "ASTTRACK_LIBRARY": str(library)},
         capture_output=True,
         check=True,
-        timeout=120,
+        timeout=400,
     )
     with (out / "results.csv").open() as stream:
         (line,) = csv.DictReader(stream)
