@@ -41,8 +41,8 @@ bool film_render(struct film *f, int32_t frames) {
     bool good = s != NULL;
     for (int32_t i = 0; i < frames && good; i++) {
         ast_box box;
-        bool present;
-        good = scene_render(s, i, &grey, &box, &present);
+        scene_presence presence;
+        good = scene_render(s, i, &grey, &box, &presence);
         if (good && i == 0) f->start = box;
         if (good && !keep(f, &grey, i, frames)) break;
     }

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define FORMAT_VERSION 1u
+#define FORMAT_VERSION 2u
 #define SHARE_LIMIT 1.0001f /* of a weight or a likeness: 1 and its rounding */
 #define POSITION_LIMIT 1e6f /* pixels: beyond any centre that a legal start or step can give */
 #define VALUE_LIMIT 1e6f    /* beyond any element of a vector or a basis, which weights keep below 100; distances stay finite */
@@ -162,7 +162,7 @@ size_t ast_save_size(const ast_config *cfg) {
     if (ast_config_check(cfg, NULL) != AST_OK) return 0;
     const size_t dim = (size_t)ast_features_length(cfg), k = (size_t)cfg->bag_size;
     const size_t background = cfg->background > 0 ? (size_t)cfg->background + 1 : 0;
-    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 6 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
+    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 7 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
     const size_t vectors = (size_t)cfg->history + k * ((size_t)cfg->basis_size + 1) + 1 + background;
     struct codec c = {.mode = CODEC_COUNT, .at = HEADER};
     visit_config(&c, cfg);
