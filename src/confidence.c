@@ -1,5 +1,6 @@
 #include "confidence.h"
 
+#include "real.h"
 #include "vector.h"
 
 /* Correlation coefficient of two vectors; 0 where one of them is flat. */
@@ -24,6 +25,12 @@ float ast_confidence_score(const float *patch, const float *anchor, const struct
     }
     const ast_real score = (first + likest) / 2;
     return score <= 0 ? 0.0f : score >= 1 ? 1.0f : (float)score;
+}
+
+float ast_confidence_probability(const struct ast_resemblance *resemblance, float spread) {
+    const float least = 0.01f; /* object sizes: a cloud narrower than that is sure, and its logarithm stays finite */
+    const float log_odds = 3.7f * resemblance->start + 1.6f * resemblance->known - 0.85f * ast_logf(spread + least) - 2.7f;
+    return 1.0f / (1.0f + ast_expf(-log_odds));
 }
 
 struct ast_confidence ast_confidence_next(struct ast_confidence last, const ast_config *cfg, float score) {

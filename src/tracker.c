@@ -362,10 +362,11 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     /* The winner's vector again (the tile has been reused), what it is worth, and its subspace when a model is due. */
     float *vector = t->tile;
     describe(t, &found_box, vector);
-    const float score = ast_confidence_score(vector, t->anchor, &t->bag);
     const struct ast_resemblance resemblance =
         ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
     const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
+    const float score =
+        t->cfg.guard > 0.0f ? ast_confidence_probability(&resemblance, spread) : ast_confidence_score(vector, t->anchor, &t->bag);
     const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
     const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
