@@ -172,8 +172,8 @@ static void test_zero_thresholds_turn_it_off(void) {
 
 static void test_probability_falls_with_likeness_and_spread(void) {
     const float likeness[] = {-1.0f, -0.2f, 0.3f, 0.6f, 1.0f}, spread[] = {0.0f, 0.05f, 0.3f, 2.0f, 50.0f};
-    for (int a = 0; a < 5; a++)
-        for (int b = 0; b < 5; b++)
+    for (int a = 0; a < 5; a++) {
+        for (int b = 0; b < 5; b++) {
             for (int c = 0; c < 5; c++) {
                 const struct ast_resemblance r = {likeness[a], likeness[b]};
                 const float p = ast_confidence_probability(&r, spread[c]);
@@ -188,8 +188,12 @@ static void test_probability_falls_with_likeness_and_spread(void) {
                     better.known = likeness[b + 1];
                     TEST_ASSERT_TRUE(ast_confidence_probability(&better, spread[c]) > p);
                 }
-                if (c < 4) TEST_ASSERT_TRUE(ast_confidence_probability(&r, spread[c + 1]) < p);
+                if (c < 4) {
+                    TEST_ASSERT_TRUE(ast_confidence_probability(&r, spread[c + 1]) < p);
+                }
             }
+        }
+    }
     /* The regression itself, in double precision. */
     const struct ast_resemblance usual = {0.5f, 0.8f};
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1 / (1 + exp(-(3.7 * 0.5 + 1.6 * 0.8 - 0.85 * log(0.06) - 2.7))),
