@@ -22,6 +22,8 @@ WERROR ?= 0
 V ?= 0
 # sanitizers for the build, as in -fsanitize=
 SANITIZE ?=
+# minutes that `make fuzz` takes for all harnesses together
+MINUTES ?= 1
 # directory of frames that `make demo` tracks (default: a rendered scene)
 FRAMES ?=
 # a checkout of Unity, the C test framework (default: fetched)
@@ -92,7 +94,8 @@ command_sources := $(filter-out examples/minimal.c,$(wildcard examples/*.c))
 test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch])
+fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch])
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -116,7 +119,9 @@ shared_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/shared/%.o)
 other_objects := $(other_backends:src/%.c=$(BUILDDIR)/obj/static/%.o)
 command_objects := $(command_sources:examples/%.c=$(BUILDDIR)/obj/examples/%.o)
 test_support_objects := $(test_support_sources:tests/%.c=$(BUILDDIR)/obj/tests/%.o) $(BUILDDIR)/obj/unity.o
-test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%)
+# The fuzzing harnesses over their corpus, without a fuzzer: tests like the others.
+replay_programs := $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/tests/%)
+test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%) $(replay_programs)
 bench_objects = $(bench_sources:bench/%.c=$(BUILDDIR)/obj/bench/%.o) \
 	$(if $(filter yes,$(NATIVE)),$(BUILDDIR)/obj/bench/peak_patch_native.o $(BUILDDIR)/obj/bench/peak_patch_narrow.o)
 
@@ -257,11 +262,21 @@ $(BUILDDIR)/libbench.a: $(bench_objects) $(BUILDDIR)/sources
 	@rm -f $@
 	$(call say,LIB)
 	$(quiet)$(AR) rcs $@ $(bench_objects)
-$(test_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
+$(filter-out $(replay_programs),$(test_programs)): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
 		$(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	@mkdir -p $(@D)
 	$(call say,LINK)
 	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+
+$(BUILDDIR)/obj/fuzz/%.o: tests/fuzz/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) -c -o $@ $<
+$(replay_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/fuzz/%.o $(BUILDDIR)/obj/fuzz/replay.o $(BUILDDIR)/libexamples.a \
+		$(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $(filter %.o,$^) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
 
 unity: $(UNITY_DIR)/src/unity.c ## fetch the C test framework
 $(UNITY_DIR)/src/unity.c:
@@ -286,6 +301,22 @@ test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests
 lint-python: .venv/installed ## static analysis and layout of the Python sources
 	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden && \
 	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden && $(CURDIR)/.venv/bin/mypy
+
+# What finds the inputs: libFuzzer, which comes with clang. Findings lie in $(BUILDDIR)/found; a crash becomes a file of
+# tests/fuzz/corpus, which every run of the tests replays.
+.PHONY: fuzz fuzz-programs
+fuzz_programs := $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/fuzz/%)
+$(fuzz_programs): $(BUILDDIR)/fuzz/%: $(BUILDDIR)/obj/fuzz/%.o $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) -fsanitize=fuzzer -o $@ $< $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+fuzz-programs: $(fuzz_programs)
+# Comparisons are not traced: that takes nine tenths of the time, and the corpus holds the words that it would find.
+fuzz: ## fuzz every harness for its share of MINUTES, with clang under the address and undefined-behaviour sanitizers
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin CC=clang BUILDDIR=$(BUILDDIR)/clang-fuzz \
+	    CFLAGS='-O2 -g -fno-sanitize-coverage=trace-cmp' \
+	    SANITIZE=fuzzer-no-link$(comma)address$(comma)undefined$(comma)float-cast-overflow fuzz-programs
+	@scripts/fuzz.sh $(MINUTES) $(BUILDDIR)/found $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/clang-fuzz/fuzz/%)
 
 sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them
 	$(if $(SANITIZE),,$(error say SANITIZE=address$(comma)undefined or another list))

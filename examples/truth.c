@@ -47,10 +47,10 @@ static const char *parse_line(const char *line, ast_box *box) {
         *box = none;
         return NULL;
     }
-    if (!(number[2] > 0.0) || !(number[3] > 0.0)) {
+    const ast_box read = {(float)number[0], (float)number[1], (float)number[2], (float)number[3]};
+    if (!(read.w > 0.0f) || !(read.h > 0.0f)) {
         return "a box without area (nan,nan,nan,nan stands for no box)";
     }
-    const ast_box read = {(float)number[0], (float)number[1], (float)number[2], (float)number[3]};
     *box = read;
     return NULL;
 }
