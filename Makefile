@@ -36,6 +36,8 @@ SEEDS ?= 5
 JOBS ?= 2
 # Python that makes the virtual environment of the Python tests
 PYTHON ?= python3
+# test programs that run, as in "test_state fuzz_api" (default: all)
+TESTS ?=
 # arguments of `make bench`, such as --quick (make bench BENCH_ARGS=--help lists them)
 BENCH_ARGS ?=
 # most stack that a call into the library may take, bytes
@@ -104,7 +106,8 @@ sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=a
 common_flags = $(CFLAGS) -std=c99 -ffp-contract=off -fno-math-errno $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
 lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
 command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
-test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
+test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= \
+	-DUNITY_SUPPORT_64 -pthread \
 	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE) $(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
 bench_flags = $(command_flags) -iquote src -iquote examples $(if $(filter yes,$(LAPACKE)),-DAST_BENCH_LAPACKE) \
 	$(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
@@ -122,6 +125,7 @@ test_support_objects := $(test_support_sources:tests/%.c=$(BUILDDIR)/obj/tests/%
 # The fuzzing harnesses over their corpus, without a fuzzer: tests like the others.
 replay_programs := $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/tests/%)
 test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%) $(replay_programs)
+chosen_programs := $(if $(TESTS),$(TESTS:%=$(BUILDDIR)/tests/%),$(test_programs))
 bench_objects = $(bench_sources:bench/%.c=$(BUILDDIR)/obj/bench/%.o) \
 	$(if $(filter yes,$(NATIVE)),$(BUILDDIR)/obj/bench/peak_patch_native.o $(BUILDDIR)/obj/bench/peak_patch_narrow.o)
 
@@ -187,7 +191,7 @@ $(BUILDDIR)/obj/bench/peak_patch_narrow.o: own_flags = -ffp-contract=fast -march
 $(BUILDDIR)/obj/unity.o: $(UNITY_DIR)/src/unity.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(quiet)$(CC) $(CFLAGS) $(sanitizers) -DUNITY_INCLUDE_DOUBLE= -c -o $@ $<
+	$(quiet)$(CC) $(CFLAGS) $(sanitizers) -DUNITY_INCLUDE_DOUBLE= -DUNITY_SUPPORT_64 -c -o $@ $<
 
 $(static_lib): $(static_objects) $(BUILDDIR)/sources
 	@rm -f $@
@@ -234,7 +238,7 @@ $(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(
 
 # ---- Tests ----
 
-.PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan
+.PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan test-32
 test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary \
 	$(if $(wildcard bindings/python/pyproject.toml),$(BUILDDIR)/python/summary)
 comma := ,
@@ -249,8 +253,8 @@ test: unity ## all tests: C with each backend, then Python
 	$(if $(wildcard bindings/python/pyproject.toml),$(again) test-python,true); python=$$?; \
 	scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); exit $$((builtin || lapacke || python))
 
-test-c: $(test_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
-	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(test_programs)
+test-c: $(chosen_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
+	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(chosen_programs)
 test-programs: $(test_programs)
 
 # A test links the objects of the examples that it calls, the program's own main() never: an archive gives only what is asked for.
@@ -328,6 +332,13 @@ ubsan: ## the C tests under the undefined-behaviour sanitizer
 # OpenBLAS is not compiled for it and would be reported.
 tsan: ## the C tests under the thread sanitizer, with the builtin backend
 	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin SANITIZE=thread sanitize
+# Where size_t has 32 bits, as on most targets: the 32-bit x86 of the same machine, whose programs it runs. The arithmetic is that of
+# other targets, not the old one of x86 that rounds as registers spill.
+X86_32 ?= i686-linux-gnu
+test-32: unity ## the C tests with 32-bit addresses, by a cross-compiler of X86_32
+	+@$(MAKE) --no-print-directory CC=$(X86_32)-gcc LAPACKE=no JPEG=no BACKEND=builtin BUILDDIR=$(BUILDDIR)/32-bit \
+	    CFLAGS='-O2 -msse2 -mfpmath=sse' \
+	    LDFLAGS='-Wl,--dynamic-linker=/usr/$(X86_32)/lib/ld-linux.so.2 -Wl,-rpath,/usr/$(X86_32)/lib' test-c
 
 # ---- Checks ----
 
@@ -412,7 +423,7 @@ distclean: clean ## remove also what was fetched: Unity, the virtual environment
 	rm -rf .unity .venv
 help: ## this text
 	@echo "targets:"
-	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
 	@echo "variables (make NAME=value):"
 	@awk '/^# / { said = substr($$0, 3) } /^[A-Z_]+ \?=/ { if (said) printf "  %-14s %s\n", $$1, said; said = "" }' \
 	    $(firstword $(MAKEFILE_LIST))
