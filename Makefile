@@ -97,7 +97,7 @@ test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
 fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch])
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c)
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -271,6 +271,19 @@ $(filter-out $(replay_programs),$(test_programs)): $(BUILDDIR)/tests/%: $(BUILDD
 	@mkdir -p $(@D)
 	$(call say,LINK)
 	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+
+# The command with faults on demand, for the tests of what it does then.
+faulty_command := $(BUILDDIR)/tests/asttrack-faulty
+faulty_calls := open fopen write close rename fread ferror $(if $(SANITIZE),malloc calloc realloc)
+$(BUILDDIR)/obj/fault/%.o: tests/fault/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) $(if $(SANITIZE),-DFAULT_WRAPS_ALLOCATION) -c -o $@ $<
+$(faulty_command): $(BUILDDIR)/obj/fault/faults.o $(command_objects) $(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) $(faulty_calls:%=-Wl$(comma)--wrap=%) -o $@ $< $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
+$(BUILDDIR)/tests/test_command_faults: | $(faulty_command)
 
 $(BUILDDIR)/obj/fuzz/%.o: tests/fuzz/%.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)

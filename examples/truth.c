@@ -169,10 +169,10 @@ bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box) {
     return true;
 }
 
-void truth_write_line(FILE *stream, const ast_box *box) {
+void truth_write_line(output_file *output, const ast_box *box) {
     if (box == NULL) {
-        fputs("nan,nan,nan,nan\n", stream);
+        output_print(output, "nan,nan,nan,nan\n");
     } else {
-        fprintf(stream, "%.2f,%.2f,%.2f,%.2f\n", (double)box->x, (double)box->y, (double)box->w, (double)box->h);
+        output_print(output, "%.2f,%.2f,%.2f,%.2f\n", (double)box->x, (double)box->y, (double)box->w, (double)box->h);
     }
 }

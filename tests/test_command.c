@@ -1,6 +1,5 @@
 /* The command from end to end: rendering and tracking a scene, its outputs, and what it says of bad input. */
 #define _XOPEN_SOURCE 700
-#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
