@@ -24,7 +24,7 @@ V ?= 0
 SANITIZE ?=
 # minutes that `make fuzz` takes for all harnesses together
 MINUTES ?= 1
-# directory of frames that `make demo` tracks (default: a rendered scene)
+# directory of frames that `make demo` tracks (default: a rendered scene); how many frames `make soak` runs (default: 100000)
 FRAMES ?=
 # a checkout of Unity, the C test framework (default: fetched)
 UNITY_DIR ?= .unity
@@ -97,7 +97,7 @@ test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
 fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c)
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -316,8 +316,8 @@ test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests
 	@touch $@
 
 lint-python: .venv/installed ## static analysis and layout of the Python sources
-	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden && \
-	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden && $(CURDIR)/.venv/bin/mypy
+	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden ../../tests/soak && \
+	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden ../../tests/soak && $(CURDIR)/.venv/bin/mypy
 
 # What finds the inputs: libFuzzer, which comes with clang. Findings lie in $(BUILDDIR)/found; a crash becomes a file of
 # tests/fuzz/corpus, which every run of the tests replays.
@@ -334,6 +334,20 @@ fuzz: ## fuzz every harness for its share of MINUTES, with clang under the addre
 	    CFLAGS='-O2 -g -fno-sanitize-coverage=trace-cmp' \
 	    SANITIZE=fuzzer-no-link$(comma)address$(comma)undefined$(comma)float-cast-overflow fuzz-programs
 	@scripts/fuzz.sh $(MINUTES) $(BUILDDIR)/found $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/clang-fuzz/fuzz/%)
+
+# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python.
+.PHONY: soak
+$(BUILDDIR)/soak: $(BUILDDIR)/obj/soak/soak.o $(BUILDDIR)/obj/tests/support_render.o $(BUILDDIR)/obj/tests/support_noise.o \
+		$(static_lib) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $(filter %.o,$^) $(static_lib) $(lib_libs)
+$(BUILDDIR)/obj/soak/%.o: tests/soak/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) -iquote tests -c -o $@ $<
+soak: $(BUILDDIR)/soak .venv/installed ## run trackers for FRAMES=1000000 frames and more, and look at their memory, numbers and time
+	$(BUILDDIR)/soak $(or $(FRAMES),100000)
+	.venv/bin/python tests/soak/soak.py $(or $(FRAMES),100000)
 
 sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them
 	$(if $(SANITIZE),,$(error say SANITIZE=address$(comma)undefined or another list))
