@@ -54,6 +54,7 @@ OBJDUMP ?= objdump
 SIZE ?= size
 CLANG_FORMAT ?= clang-format
 CLANG_TIDY ?= clang-tidy
+CPPCHECK ?= cppcheck
 INSTALL ?= install
 
 MAKEFLAGS += --no-builtin-rules
@@ -369,7 +370,7 @@ test-32: unity ## the C tests with 32-bit addresses, by a cross-compiler of X86_
 
 # ---- Checks ----
 
-.PHONY: size symbols stack stack-objects accuracy accuracy-tables lint format format-check
+.PHONY: size symbols stack stack-objects accuracy accuracy-tables lint analyse memcheck format format-check
 size: $(static_lib) ## bytes of code and data; fails when the library has writable data
 	@$(SIZE) -t $(static_lib)
 	@$(OBJDUMP) -t $(static_lib) | awk -F '\t' '/file format/ { sub(/:.*/, ""); object = $$0 } \
@@ -415,6 +416,20 @@ lint: ## static analysis of the C sources
 	    xargs -P $$(nproc) -n 1 sh -c '$(CLANG_TIDY) --quiet "$$0" -- -std=c99 -Iinclude -iquote src -iquote examples \
 	    -DAST_LINALG=ast_linalg_$(BACKEND) \
 	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
+
+# What reads the code rather than runs it, beside lint. cppcheck: each finding is an error; the functions of the API have no caller here.
+analyse: ## static analysis by gcc -fanalyzer and cppcheck
+	@$(CPPCHECK) --version >/dev/null || { echo "no $(CPPCHECK): on Debian, apt-get install cppcheck" >&2; exit 1; }
+	$(CPPCHECK) --quiet --std=c99 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -Iinclude -Isrc \
+	    -DAST_LINALG=ast_linalg_$(BACKEND) $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) -D_POSIX_C_SOURCE=200809L \
+	    --suppress=missingIncludeSystem $(lib_sources) examples/*.c
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/analyse CC=gcc CFLAGS='-O1 -fanalyzer' WERROR=1 LAPACKE=$(LAPACKE) \
+	    JPEG=$(JPEG) BACKEND=$(BACKEND) lib-static examples >/dev/null && echo "gcc -fanalyzer: nothing found"
+
+# Unity's programs one after the other; TESTS= names some of them. A leak, a wild read and an uninitialised value are errors.
+memcheck: unity ## the C tests under valgrind, with the builtin backend
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' \
+	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite,possible' test-c
 
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)

@@ -4,7 +4,6 @@ usage: soak.py FRAMES
 """
 
 import gc
-import random
 import resource
 import sys
 import time
@@ -63,7 +62,7 @@ def soak(frames: int, film: list[np.ndarray], boxes: list[tuple[float, float, fl
     """One tracker, in blocks."""
     tracker = asttrack.Tracker("robust", **SETTINGS)
     tracker.init(film[0], boxes[0])
-    print(f"python {sys.version.split()[0]}, robust preset's parts, {tracker.memory_size} bytes, backend {asttrack.library.backend}")
+    print(f"Python {sys.version.split()[0]}, robust preset's parts, {tracker.memory_size} bytes, {asttrack.library.backend}")
     print(f"{'frames':>10} {'us per frame':>14} {'blocks':>12} {'resident, KiB':>14}")
     resident, allocated, seconds = [], [], []
     for block in range(BLOCKS):
@@ -79,16 +78,17 @@ def soak(frames: int, film: list[np.ndarray], boxes: list[tuple[float, float, fl
         gc.collect()
         allocated.append(sys.getallocatedblocks())
         resident.append(resident_kib())
-        print(f"{(block + 1) * (frames // BLOCKS):>10} {1e6 * seconds[-1] / (frames // BLOCKS):>14.2f} {allocated[-1]:>12} {resident[-1]:>14}")
+        done, each = (block + 1) * (frames // BLOCKS), 1e6 * seconds[-1] / (frames // BLOCKS)
+        print(f"{done:>10} {each:>14.2f} {allocated[-1]:>12} {resident[-1]:>14}", flush=True)
     print(f"time of the last block / of the first: {seconds[-1] / seconds[0]:.3f}\n")
-    # The lists above take a few blocks themselves.
+    # The table itself takes four a row.
     require(allocated[-1] - allocated[1] < 100, "Python's own memory is flat")
     require(resident[-1] - resident[1] <= 1024, "resident memory is flat")
 
 
 def crowd(frames: int, film: list[np.ndarray], boxes: list[tuple[float, float, float, float]]) -> None:
     """Two hundred trackers over one video, started and stopped at random."""
-    chance = random.Random(1)
+    chance = np.random.default_rng(1)
     members: list[asttrack.Tracker | None] = [None] * CROWD
     starts = steps = most = 0
     for f in range(frames):
@@ -107,7 +107,8 @@ def crowd(frames: int, film: list[np.ndarray], boxes: list[tuple[float, float, f
                 require(bool(np.isfinite(member.update(film[f % LOOP]).box).all()), "a box of numbers in the crowd")
                 steps += 1
         most = max(most, sum(member is not None for member in members))
-    print(f"crowd of {CROWD}: {frames} frames, {starts} trackers, at most {most} at once, {steps} steps; resident {resident_kib()} KiB")
+    print(f"crowd of {CROWD}: {frames} frames, {starts} trackers, at most {most} at once, {steps} steps")
+    print(f"resident: {resident_kib()} KiB")
     require(starts > CROWD and most > CROWD // 2, "a crowd")
 
 
