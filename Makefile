@@ -22,7 +22,9 @@ WERROR ?= 0
 V ?= 0
 # sanitizers for the build, as in -fsanitize=
 SANITIZE ?=
-# directory of frames that `make demo` tracks (default: a rendered scene)
+# minutes that `make fuzz` takes for all harnesses together
+MINUTES ?= 1
+# directory of frames that `make demo` tracks (default: a rendered scene); how many frames `make soak` runs (default: 100000)
 FRAMES ?=
 # a checkout of Unity, the C test framework (default: fetched)
 UNITY_DIR ?= .unity
@@ -34,6 +36,8 @@ SEEDS ?= 5
 JOBS ?= 2
 # Python that makes the virtual environment of the Python tests
 PYTHON ?= python3
+# test programs that run, as in "test_state fuzz_api" (default: all)
+TESTS ?=
 # arguments of `make bench`, such as --quick (make bench BENCH_ARGS=--help lists them)
 BENCH_ARGS ?=
 # most stack that a call into the library may take, bytes
@@ -50,6 +54,7 @@ OBJDUMP ?= objdump
 SIZE ?= size
 CLANG_FORMAT ?= clang-format
 CLANG_TIDY ?= clang-tidy
+CPPCHECK ?= cppcheck
 INSTALL ?= install
 
 MAKEFLAGS += --no-builtin-rules
@@ -92,7 +97,8 @@ command_sources := $(filter-out examples/minimal.c,$(wildcard examples/*.c))
 test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch])
+fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c)
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -101,7 +107,8 @@ sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=a
 common_flags = $(CFLAGS) -std=c99 -ffp-contract=off -fno-math-errno $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
 lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
 command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
-test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= -pthread \
+test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= \
+	-DUNITY_SUPPORT_64 -pthread \
 	$(if $(filter yes,$(LAPACKE)),-DAST_TEST_LAPACKE) $(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
 bench_flags = $(command_flags) -iquote src -iquote examples $(if $(filter yes,$(LAPACKE)),-DAST_BENCH_LAPACKE) \
 	$(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
@@ -116,7 +123,10 @@ shared_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/shared/%.o)
 other_objects := $(other_backends:src/%.c=$(BUILDDIR)/obj/static/%.o)
 command_objects := $(command_sources:examples/%.c=$(BUILDDIR)/obj/examples/%.o)
 test_support_objects := $(test_support_sources:tests/%.c=$(BUILDDIR)/obj/tests/%.o) $(BUILDDIR)/obj/unity.o
-test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%)
+# The fuzzing harnesses over their corpus, without a fuzzer: tests like the others.
+replay_programs := $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/tests/%)
+test_programs := $(test_sources:tests/%.c=$(BUILDDIR)/tests/%) $(replay_programs)
+chosen_programs := $(if $(TESTS),$(TESTS:%=$(BUILDDIR)/tests/%),$(test_programs))
 bench_objects = $(bench_sources:bench/%.c=$(BUILDDIR)/obj/bench/%.o) \
 	$(if $(filter yes,$(NATIVE)),$(BUILDDIR)/obj/bench/peak_patch_native.o $(BUILDDIR)/obj/bench/peak_patch_narrow.o)
 
@@ -182,7 +192,7 @@ $(BUILDDIR)/obj/bench/peak_patch_narrow.o: own_flags = -ffp-contract=fast -march
 $(BUILDDIR)/obj/unity.o: $(UNITY_DIR)/src/unity.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(quiet)$(CC) $(CFLAGS) $(sanitizers) -DUNITY_INCLUDE_DOUBLE= -c -o $@ $<
+	$(quiet)$(CC) $(CFLAGS) $(sanitizers) -DUNITY_INCLUDE_DOUBLE= -DUNITY_SUPPORT_64 -c -o $@ $<
 
 $(static_lib): $(static_objects) $(BUILDDIR)/sources
 	@rm -f $@
@@ -229,7 +239,7 @@ $(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(
 
 # ---- Tests ----
 
-.PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan
+.PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan test-32
 test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary \
 	$(if $(wildcard bindings/python/pyproject.toml),$(BUILDDIR)/python/summary)
 comma := ,
@@ -244,8 +254,8 @@ test: unity ## all tests: C with each backend, then Python
 	$(if $(wildcard bindings/python/pyproject.toml),$(again) test-python,true); python=$$?; \
 	scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); exit $$((builtin || lapacke || python))
 
-test-c: $(test_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
-	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(test_programs)
+test-c: $(chosen_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
+	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(chosen_programs)
 test-programs: $(test_programs)
 
 # A test links the objects of the examples that it calls, the program's own main() never: an archive gives only what is asked for.
@@ -257,11 +267,34 @@ $(BUILDDIR)/libbench.a: $(bench_objects) $(BUILDDIR)/sources
 	@rm -f $@
 	$(call say,LIB)
 	$(quiet)$(AR) rcs $@ $(bench_objects)
-$(test_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
+$(filter-out $(replay_programs),$(test_programs)): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/tests/%.o $(test_support_objects) $(other_objects) \
 		$(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	@mkdir -p $(@D)
 	$(call say,LINK)
 	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+
+# The command with faults on demand, for the tests of what it does then.
+faulty_command := $(BUILDDIR)/tests/asttrack-faulty
+faulty_calls := open fopen write close rename fread ferror $(if $(SANITIZE),malloc calloc realloc)
+$(BUILDDIR)/obj/fault/%.o: tests/fault/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) $(if $(SANITIZE),-DFAULT_WRAPS_ALLOCATION) -c -o $@ $<
+$(faulty_command): $(BUILDDIR)/obj/fault/faults.o $(command_objects) $(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) $(faulty_calls:%=-Wl$(comma)--wrap=%) -o $@ $< $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
+$(BUILDDIR)/tests/test_command_faults: | $(faulty_command)
+
+$(BUILDDIR)/obj/fuzz/%.o: tests/fuzz/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) -c -o $@ $<
+$(replay_programs): $(BUILDDIR)/tests/%: $(BUILDDIR)/obj/fuzz/%.o $(BUILDDIR)/obj/fuzz/replay.o $(BUILDDIR)/libexamples.a \
+		$(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $(filter %.o,$^) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
 
 unity: $(UNITY_DIR)/src/unity.c ## fetch the C test framework
 $(UNITY_DIR)/src/unity.c:
@@ -284,8 +317,38 @@ test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests
 	@touch $@
 
 lint-python: .venv/installed ## static analysis and layout of the Python sources
-	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden && \
-	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden && $(CURDIR)/.venv/bin/mypy
+	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden ../../tests/soak && \
+	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden ../../tests/soak && $(CURDIR)/.venv/bin/mypy
+
+# What finds the inputs: libFuzzer, which comes with clang. Findings lie in $(BUILDDIR)/found; a crash becomes a file of
+# tests/fuzz/corpus, which every run of the tests replays.
+.PHONY: fuzz fuzz-programs
+fuzz_programs := $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/fuzz/%)
+$(fuzz_programs): $(BUILDDIR)/fuzz/%: $(BUILDDIR)/obj/fuzz/%.o $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
+	@mkdir -p $(@D)
+	$(call say,LINK)
+	$(quiet)$(link) -fsanitize=fuzzer -o $@ $< $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+fuzz-programs: $(fuzz_programs)
+# Comparisons are not traced: that takes nine tenths of the time, and the corpus holds the words that it would find.
+fuzz: ## fuzz every harness for its share of MINUTES, with clang under the address and undefined-behaviour sanitizers
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin CC=clang BUILDDIR=$(BUILDDIR)/clang-fuzz \
+	    CFLAGS='-O2 -g -fno-sanitize-coverage=trace-cmp' \
+	    SANITIZE=fuzzer-no-link$(comma)address$(comma)undefined$(comma)float-cast-overflow fuzz-programs
+	@scripts/fuzz.sh $(MINUTES) $(BUILDDIR)/found $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/clang-fuzz/fuzz/%)
+
+# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python.
+.PHONY: soak
+$(BUILDDIR)/soak: $(BUILDDIR)/obj/soak/soak.o $(BUILDDIR)/obj/tests/support_render.o $(BUILDDIR)/obj/tests/support_noise.o \
+		$(static_lib) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -o $@ $(filter %.o,$^) $(static_lib) $(lib_libs)
+$(BUILDDIR)/obj/soak/%.o: tests/soak/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(test_flags) -iquote tests -c -o $@ $<
+soak: $(BUILDDIR)/soak .venv/installed ## run trackers for FRAMES=1000000 frames and more, and look at their memory, numbers and time
+	$(BUILDDIR)/soak $(or $(FRAMES),100000)
+	.venv/bin/python tests/soak/soak.py $(or $(FRAMES),100000)
 
 sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them
 	$(if $(SANITIZE),,$(error say SANITIZE=address$(comma)undefined or another list))
@@ -297,10 +360,17 @@ ubsan: ## the C tests under the undefined-behaviour sanitizer
 # OpenBLAS is not compiled for it and would be reported.
 tsan: ## the C tests under the thread sanitizer, with the builtin backend
 	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin SANITIZE=thread sanitize
+# Where size_t has 32 bits, as on most targets: the 32-bit x86 of the same machine, whose programs it runs. The arithmetic is that of
+# other targets, not the old one of x86 that rounds as registers spill.
+X86_32 ?= i686-linux-gnu
+test-32: unity ## the C tests with 32-bit addresses, by a cross-compiler of X86_32
+	+@$(MAKE) --no-print-directory CC=$(X86_32)-gcc LAPACKE=no JPEG=no BACKEND=builtin BUILDDIR=$(BUILDDIR)/32-bit \
+	    CFLAGS='-O2 -msse2 -mfpmath=sse' \
+	    LDFLAGS='-Wl,--dynamic-linker=/usr/$(X86_32)/lib/ld-linux.so.2 -Wl,-rpath,/usr/$(X86_32)/lib' test-c
 
 # ---- Checks ----
 
-.PHONY: size symbols stack stack-objects accuracy accuracy-tables lint format format-check
+.PHONY: size symbols stack stack-objects accuracy accuracy-tables lint analyse memcheck format format-check
 size: $(static_lib) ## bytes of code and data; fails when the library has writable data
 	@$(SIZE) -t $(static_lib)
 	@$(OBJDUMP) -t $(static_lib) | awk -F '\t' '/file format/ { sub(/:.*/, ""); object = $$0 } \
@@ -347,6 +417,21 @@ lint: ## static analysis of the C sources
 	    -DAST_LINALG=ast_linalg_$(BACKEND) \
 	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
 
+# What reads the code rather than runs it, beside lint. cppcheck: each finding is an error; the functions of the API have no caller here.
+analyse: ## static analysis by gcc -fanalyzer and cppcheck
+	@$(CPPCHECK) --version >/dev/null || { echo "no $(CPPCHECK): on Debian, apt-get install cppcheck" >&2; exit 1; }
+	$(CPPCHECK) --quiet --std=c99 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -Iinclude -Isrc \
+	    -DAST_LINALG=ast_linalg_$(BACKEND) $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) -D_POSIX_C_SOURCE=200809L \
+	    --suppress=missingIncludeSystem $(lib_sources) examples/*.c
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/analyse CC=gcc CFLAGS='-O1 -fanalyzer' WERROR=1 LAPACKE=$(LAPACKE) \
+	    JPEG=$(JPEG) BACKEND=$(BACKEND) lib-static examples >/dev/null && echo "gcc -fanalyzer: nothing found"
+
+# A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
+# valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long.
+memcheck: unity ## the C tests under valgrind, with the builtin backend
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' \
+	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite' test-c
+
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)
 format-check: ## fail when `make format` would change a file
@@ -381,7 +466,7 @@ distclean: clean ## remove also what was fetched: Unity, the virtual environment
 	rm -rf .unity .venv
 help: ## this text
 	@echo "targets:"
-	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
 	@echo "variables (make NAME=value):"
 	@awk '/^# / { said = substr($$0, 3) } /^[A-Z_]+ \?=/ { if (said) printf "  %-14s %s\n", $$1, said; said = "" }' \
 	    $(firstword $(MAKEFILE_LIST))

@@ -7,9 +7,13 @@
 #include <string.h>
 
 bool config_options_start(config_options *options, int argc) {
+    int32_t fields = 0;
+    (void)ast_config_fields(&fields);
     memset(options, 0, sizeof *options);
     options->settings = malloc(((size_t)argc + 1) * sizeof *options->settings);
-    if (options->settings == NULL) {
+    options->seen = calloc((size_t)fields, sizeof *options->seen);
+    if (options->settings == NULL || options->seen == NULL) {
+        config_options_free(options);
         report_error("out of memory");
         return false;
     }
@@ -18,6 +22,7 @@ bool config_options_start(config_options *options, int argc) {
 
 void config_options_free(config_options *options) {
     free(options->settings);
+    free(options->seen);
     memset(options, 0, sizeof *options);
 }
 
@@ -153,22 +158,17 @@ bool config_options_build(const config_options *options, ast_config *config) {
     int32_t count = 0;
     const ast_config_field *fields = ast_config_fields(&count);
     if (!load_preset(options->preset != NULL ? options->preset : "robust", config)) return false;
-    bool *seen = calloc((size_t)count, sizeof *seen);
-    if (seen == NULL) {
-        report_error("out of memory");
-        return false;
-    }
+    memset(options->seen, 0, (size_t)count * sizeof *options->seen);
     bool good = true;
     if (options->seed != NULL) {
         const int32_t row = find_field(fields, count, "seed", 4);
         good = set_seed("--seed", options->seed, &config->seed);
         if (row >= 0) {
-            seen[row] = true;
+            options->seen[row] = true;
         }
     }
     for (int i = 0; i < options->count && good; ++i) {
-        good = apply(options->settings[i], fields, count, seen, config);
+        good = apply(options->settings[i], fields, count, options->seen, config);
     }
-    free(seen);
     return good && check(config);
 }

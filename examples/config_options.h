@@ -18,6 +18,7 @@ typedef struct config_options {
     const char *seed;
     const char **settings; /* "field=value", in order; room for every argument of the command line */
     int count;
+    bool *seen; /* for each field of ast_config_fields: a setting has named it */
 } config_options;
 
 /* False when out of memory (reported). */

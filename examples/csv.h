@@ -2,12 +2,12 @@
 #ifndef CSV_H
 #define CSV_H
 
+#include "output_file.h"
+
 #include <asttrack.h>
 
-#include <stdio.h>
-
-void csv_write_header(FILE *stream);
+void csv_write_header(output_file *output);
 /* number: of the frame in its sequence, from 1. */
-void csv_write_row(FILE *stream, int32_t number, const ast_result *result);
+void csv_write_row(output_file *output, int32_t number, const ast_result *result);
 
 #endif

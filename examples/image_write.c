@@ -28,16 +28,16 @@ bool image_write_supports(const char *path, int32_t channels) {
     return true;
 }
 
-static void write_netpbm(FILE *stream, kind k, const image *picture) {
+static void write_netpbm(output_file *output, kind k, const image *picture) {
     const size_t pixels = (size_t)picture->width * (size_t)picture->height;
-    fprintf(stream, "P%d\n%d %d\n255\n", k == KIND_PGM ? 5 : 6, (int)picture->width, (int)picture->height);
+    output_print(output, "P%d\n%d %d\n255\n", k == KIND_PGM ? 5 : 6, (int)picture->width, (int)picture->height);
     if (k == KIND_PGM || picture->channels == 3) {
-        (void)fwrite(picture->pixels, (size_t)picture->channels, pixels, stream);
+        output_bytes(output, picture->pixels, (size_t)picture->channels * pixels);
         return;
     }
     for (size_t i = 0; i < pixels; ++i) {
         const uint8_t rgb[3] = {picture->pixels[i], picture->pixels[i], picture->pixels[i]};
-        (void)fwrite(rgb, 1, sizeof rgb, stream);
+        output_bytes(output, rgb, sizeof rgb);
     }
 }
 
@@ -54,7 +54,7 @@ bool image_write(const char *path, const image *picture) {
             return false;
         }
     } else {
-        write_netpbm(output.stream, k, picture);
+        write_netpbm(&output, k, picture);
     }
     return output_commit(&output);
 }

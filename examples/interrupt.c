@@ -1,3 +1,6 @@
+/* SIGXFSZ belongs to the X/Open part of POSIX */
+#define _XOPEN_SOURCE 700
+
 #include "interrupt.h"
 
 #include <signal.h>
@@ -25,6 +28,7 @@ void interrupt_install(void) {
     action.sa_handler = SIG_IGN;
     action.sa_flags = 0;
     (void)sigaction(SIGPIPE, &action, NULL);
+    (void)sigaction(SIGXFSZ, &action, NULL);
 }
 
 bool interrupt_pending(void) {

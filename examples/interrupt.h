@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-/* Notes SIGINT, SIGTERM and SIGHUP from here on (a second one ends the process at once), and ignores SIGPIPE: a closed pipe
- * becomes an error of the write, which is reported like any other. */
+/* Notes SIGINT, SIGTERM and SIGHUP from here on (a second one ends the process at once), and ignores SIGPIPE and SIGXFSZ: a closed
+ * pipe or a limit on the size of files becomes an error of the write, which is reported like any other. */
 void interrupt_install(void);
 /* True once such a signal has come. */
 bool interrupt_pending(void);

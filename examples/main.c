@@ -7,8 +7,10 @@
 #include <asttrack.h>
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct {
     const char *name;
@@ -49,6 +51,15 @@ static int run(int argc, char **argv) {
     return EXIT_USAGE;
 }
 
+/* Takes the place of a standard stream that the caller closed, so that no file becomes that stream by being opened next. Each is open
+ * the wrong way round: to use it is still an error. Nothing is open here but the streams, so the least number free is the right one. */
+static void occupy_standard_streams(void) {
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+        if (fcntl(descriptor, F_GETFD) >= 0) continue;
+        if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor) return;
+    }
+}
+
 /* What printf could not write shows only here. */
 static int finish_stdout(int code) {
     errno = 0;
@@ -58,6 +69,7 @@ static int finish_stdout(int code) {
 }
 
 int main(int argc, char **argv) {
+    occupy_standard_streams();
     interrupt_install();
     const int code = finish_stdout(run(argc, argv));
     interrupt_deliver();

@@ -134,7 +134,8 @@ bool option_box(const char *name, const char *text, ast_box *box) {
         good = option_parse_real(&at, &number[i]) && *at == (i < 3 ? ',' : '\0');
         ++at;
     }
-    if (!good || !(number[2] > 0.0) || !(number[3] > 0.0)) {
+    /* as a float: a side may vanish in it */
+    if (!good || !((float)number[2] > 0.0f) || !((float)number[3] > 0.0f)) {
         report_error("%s %s: not a box x,y,w,h in pixels", name, text);
         return false;
     }

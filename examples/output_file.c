@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -72,6 +73,8 @@ static int open_temporary(output_file *output, mode_t mode) {
 static int open_target(output_file *output) {
     struct stat status;
     if (stat(output->path, &status) != 0) {
+        /* a link to nothing, such as /dev/stdout with that stream closed, must not be replaced either */
+        if (lstat(output->path, &status) == 0) return -1;
         output->target = strdup(output->path);
         return output->target != NULL ? open_temporary(output, 0666) : -1;
     }
@@ -94,6 +97,17 @@ bool output_open(output_file *output, const char *path) {
     return output->descriptor >= 0 || fail(output, errno);
 }
 
+void output_print(output_file *output, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    output->lost = vfprintf(output->stream, format, arguments) < 0 || output->lost;
+    va_end(arguments);
+}
+
+void output_bytes(output_file *output, const void *bytes, size_t size) {
+    output->lost = fwrite(bytes, 1, size, output->stream) != size || output->lost;
+}
+
 /* 0, or errno. */
 static int write_all(int descriptor, const char *bytes, size_t size) {
     while (size > 0) {
@@ -108,7 +122,7 @@ static int write_all(int descriptor, const char *bytes, size_t size) {
 }
 
 bool output_commit(output_file *output) {
-    if (fflush(output->stream) != 0 || ferror(output->stream)) return fail(output, ENOMEM);
+    if (fflush(output->stream) != 0 || ferror(output->stream) || output->lost) return fail(output, ENOMEM);
     int cause = write_all(output->descriptor, output->bytes, output->size);
     if (close(output->descriptor) != 0 && cause == 0) cause = errno;
     output->descriptor = -1;

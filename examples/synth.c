@@ -114,7 +114,8 @@ static bool has_no_strangers(const char *directory, int32_t frames) {
     return good;
 }
 
-static bool render_one(const scene *s, int32_t index, const char *directory, image *grey, FILE *truth, FILE *absence) {
+static bool render_one(const scene *s, int32_t index, const char *directory, image *grey, output_file *truth,
+                       output_file *absence) {
     ast_box box;
     scene_presence presence;
     char name[NAME_SIZE];
@@ -126,13 +127,13 @@ static bool render_one(const scene *s, int32_t index, const char *directory, ima
     } else {
         good = image_write(path, grey);
         truth_write_line(truth, presence == SCENE_AWAY ? NULL : &box);
-        fprintf(absence, "%d\n", presence == SCENE_IN_VIEW ? 0 : 1);
+        output_print(absence, "%d\n", presence == SCENE_IN_VIEW ? 0 : 1);
     }
     free(path);
     return good;
 }
 
-static bool render_all(const scene *s, int32_t frames, const char *directory, FILE *truth, FILE *absence) {
+static bool render_all(const scene *s, int32_t frames, const char *directory, output_file *truth, output_file *absence) {
     image grey;
     bool good = true;
     memset(&grey, 0, sizeof grey);
@@ -159,7 +160,7 @@ static bool write_sequence(const scene *s, int32_t frames, const char *image_dir
         output_discard(&truth);
         return false;
     }
-    if (!render_all(s, frames, image_directory, truth.stream, absence.stream) || !output_commit(&absence)) {
+    if (!render_all(s, frames, image_directory, &truth, &absence) || !output_commit(&absence)) {
         output_discard(&absence);
         output_discard(&truth);
         return false;

@@ -78,15 +78,15 @@ static bool spares_inputs(const char *name, const char *path, const sequence *s)
     return !clash;
 }
 
-/* Pictures among the frames would overwrite them, or be taken for frames the next time. */
-static bool spares_directories(const char *annotate_directory, const arguments *a, const sequence *s) {
-    if (annotate_directory == NULL) return true;
+/* Pictures among the frames would overwrite them, or be taken for frames the next time: EXIT_OK where they would not. */
+static int check_annotate_directory(const char *annotate_directory, const arguments *a, const sequence *s) {
+    if (annotate_directory == NULL) return EXIT_OK;
     bool clash = path_same(annotate_directory, a->inputs[0]);
     for (int32_t i = 0; i < s->count && !clash; ++i) {
         char *directory = path_directory(s->frames[i]);
         if (directory == NULL) {
             report_error("out of memory");
-            return false;
+            return EXIT_DATA;
         }
         clash = path_same(annotate_directory, directory);
         free(directory);
@@ -94,13 +94,13 @@ static bool spares_directories(const char *annotate_directory, const arguments *
     if (clash) {
         report_error("--annotate %s: is a directory of the sequence", annotate_directory);
     }
-    return !clash;
+    return clash ? EXIT_USAGE : EXIT_OK;
 }
 
 static int run_on(const sequence *s, const arguments *a, const ast_config *config, const ast_box *box) {
-    if (!spares_inputs("--csv", a->csv, s) || !spares_inputs("--sheet", a->sheet, s) || !spares_directories(a->annotate, a, s)) {
-        return EXIT_USAGE;
-    }
+    if (!spares_inputs("--csv", a->csv, s) || !spares_inputs("--sheet", a->sheet, s)) return EXIT_USAGE;
+    const int code = check_annotate_directory(a->annotate, a, s);
+    if (code != EXIT_OK) return code;
     if (s->truth_path == NULL && box == NULL) {
         report_error("%s: no groundtruth.txt: %s", a->inputs[0],
                      a->init_sequence ? "--init-sequence needs it" : "give the first box with --box x,y,w,h");

@@ -75,7 +75,7 @@ static bool record(run *r, int32_t index, const image *frame, const ast_result *
     const track_job *job = r->job;
     const ast_box *truth = truth_box(&job->frames->annotations, index);
     if (r->csv.stream != NULL) {
-        csv_write_row(r->csv.stream, index + 1, result);
+        csv_write_row(&r->csv, index + 1, result);
     }
     report_progress(job->frames->name, index + 1, job->frames->count, status_name(result->status));
     if (job->annotate == NULL && job->sheet == NULL) return true;
@@ -232,7 +232,7 @@ static bool open_outputs(run *r) {
     }
     if (job->csv != NULL) {
         if (!output_open(&r->csv, job->csv)) return false;
-        csv_write_header(r->csv.stream);
+        csv_write_header(&r->csv);
     }
     return true;
 }

@@ -47,10 +47,10 @@ static const char *parse_line(const char *line, ast_box *box) {
         *box = none;
         return NULL;
     }
-    if (!(number[2] > 0.0) || !(number[3] > 0.0)) {
+    const ast_box read = {(float)number[0], (float)number[1], (float)number[2], (float)number[3]};
+    if (!(read.w > 0.0f) || !(read.h > 0.0f)) {
         return "a box without area (nan,nan,nan,nan stands for no box)";
     }
-    const ast_box read = {(float)number[0], (float)number[1], (float)number[2], (float)number[3]};
     *box = read;
     return NULL;
 }
@@ -146,6 +146,11 @@ const ast_box *truth_box(const ground_truth *t, int32_t frame) {
     return frame >= 0 && frame < t->count && !isnan(t->boxes[frame].w) ? &t->boxes[frame] : NULL;
 }
 
+/* In double precision, where the difference of no two floats is infinite. */
+static float between(float a, float b, double part) {
+    return (float)((double)a + part * ((double)b - (double)a));
+}
+
 bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box) {
     int32_t before = frame, after = frame;
     while (before >= 0 && truth_box(t, before) == NULL) {
@@ -156,18 +161,18 @@ bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box) {
     }
     const ast_box *a = truth_box(t, before), *b = truth_box(t, after);
     if (a == NULL || b == NULL) return false;
-    const float part = after == before ? 0.0f : (float)(frame - before) / (float)(after - before);
-    box->x = a->x + part * (b->x - a->x);
-    box->y = a->y + part * (b->y - a->y);
-    box->w = a->w + part * (b->w - a->w);
-    box->h = a->h + part * (b->h - a->h);
+    const double part = after == before ? 0.0 : (double)(frame - before) / (double)(after - before);
+    box->x = between(a->x, b->x, part);
+    box->y = between(a->y, b->y, part);
+    box->w = between(a->w, b->w, part);
+    box->h = between(a->h, b->h, part);
     return true;
 }
 
-void truth_write_line(FILE *stream, const ast_box *box) {
+void truth_write_line(output_file *output, const ast_box *box) {
     if (box == NULL) {
-        fputs("nan,nan,nan,nan\n", stream);
+        output_print(output, "nan,nan,nan,nan\n");
     } else {
-        fprintf(stream, "%.2f,%.2f,%.2f,%.2f\n", (double)box->x, (double)box->y, (double)box->w, (double)box->h);
+        output_print(output, "%.2f,%.2f,%.2f,%.2f\n", (double)box->x, (double)box->y, (double)box->w, (double)box->h);
     }
 }

@@ -3,10 +3,11 @@
 #ifndef TRUTH_H
 #define TRUTH_H
 
+#include "output_file.h"
+
 #include <asttrack.h>
 
 #include <stdbool.h>
-#include <stdio.h>
 
 typedef struct ground_truth {
     ast_box *boxes; /* nan sides where there is none */
@@ -22,6 +23,6 @@ const ast_box *truth_box(const ground_truth *t, int32_t frame);
  * at or after the frame, or none at or before it. */
 bool truth_interpolate(const ground_truth *t, int32_t frame, ast_box *box);
 /* Writes the line of one frame; NULL: no box. */
-void truth_write_line(FILE *stream, const ast_box *box);
+void truth_write_line(output_file *output, const ast_box *box);
 
 #endif

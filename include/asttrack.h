@@ -55,7 +55,7 @@ enum {
     AST_E_ARENA = -10,         /* the caller's block is smaller than ast_mem_size */
     AST_E_OUT_OF_MEMORY = -11, /* the one allocation of ast_init failed */
     AST_E_NO_HEAP = -12,       /* mem == NULL in a build with AST_NO_HEAP */
-    AST_E_FRAME = -20,         /* frame with no pixels, a side outside 1..AST_MAX_FRAME, or stride < width */
+    AST_E_FRAME = -20,         /* a side outside 1..AST_MAX_FRAME, stride < width, or more rows than the memory has addresses */
     AST_E_BOX = -21,           /* box not finite, a side below one pixel or above AST_MAX_FRAME, or wholly outside its frame */
     AST_E_NOT_STARTED = -22,   /* ast_step, ast_save or a look inside before ast_start */
     AST_E_RANGE = -23,         /* an index or a count outside its range */

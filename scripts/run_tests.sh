@@ -16,7 +16,8 @@ passed=0 failed=0 skipped=0
 echo "$title:"
 for program in "$@"; do
     name=$(basename "$program")
-    timeout 1500 "$program" >"$log" 2>&1
+    # AST_TEST_RUNNER: what runs them, such as valgrind and its options
+    timeout 1500 ${AST_TEST_RUNNER:-} "$program" >"$log" 2>&1
     status=$?
     # Unity's last word: "12 Tests 1 Failures 0 Ignored"
     counts=$(sed -n 's/^\([0-9][0-9]*\) Tests \([0-9][0-9]*\) Failures \([0-9][0-9]*\) Ignored *$/\1 \2 \3/p' "$log" | tail -n 1)

@@ -4,10 +4,15 @@ static int sides_are_legal(int32_t width, int32_t height) {
     return width >= 1 && height >= 1 && width <= AST_MAX_FRAME && height <= AST_MAX_FRAME;
 }
 
+/* Where addresses have 32 bits, the last row of a large frame or of a long stride would lie beyond the end of memory. */
+static int rows_fit_memory(int32_t stride, int32_t height) {
+    return (uint64_t)stride * (uint64_t)height <= (uint64_t)PTRDIFF_MAX;
+}
+
 int ast_frame_check(const ast_frame *frame) {
     if (frame == NULL || frame->pixels == NULL) return AST_E_NULL;
     if (!sides_are_legal(frame->width, frame->height) || frame->stride < frame->width) return AST_E_FRAME;
-    return AST_OK;
+    return rows_fit_memory(frame->stride, frame->height) ? AST_OK : AST_E_FRAME;
 }
 
 int ast_box_check(const ast_box *box, const ast_frame *frame) {
@@ -29,7 +34,7 @@ static int conversion_check(const uint8_t *dst, int32_t dst_stride, const uint8_
                             int32_t height, int32_t bytes) {
     if (dst == NULL || src == NULL) return AST_E_NULL;
     if (!sides_are_legal(width, height) || dst_stride < width || src_stride < width * bytes) return AST_E_FRAME;
-    return AST_OK;
+    return rows_fit_memory(dst_stride, height) && rows_fit_memory(src_stride, height) ? AST_OK : AST_E_FRAME;
 }
 
 static int grey_from_triples(uint8_t *dst, int32_t dst_stride, const uint8_t *src, int32_t src_stride, int32_t width,

@@ -20,6 +20,7 @@ const struct ast_kernels *ast_kernels_at(int index) {
 #endif
     };
     const int count = (int)(sizeof all / sizeof all[0]);
-    if (index < 0 || index >= count || (index > 0 && all[index - 1] == best)) return NULL;
+    if (index < 0 || index >= count) return NULL;
+    if (index > 0 && all[index - 1] == best) return NULL;
     return all[index];
 }

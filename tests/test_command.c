@@ -1,178 +1,18 @@
-/* The command from end to end, as a shell would run it: rendering and tracking a scene, its outputs, and what it says of bad input.
- * The program is ../asttrack from where this test lies, or AST_COMMAND. */
+/* The command from end to end: rendering and tracking a scene, its outputs, and what it says of bad input. */
 #define _XOPEN_SOURCE 700
-#include <ctype.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <ftw.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "support_command.h"
 #include "unity.h"
-
-enum { PATH_SIZE = 1024, TEXT_SIZE = 65536, MOST_ARGUMENTS = 24 };
-
-static char command[PATH_SIZE];   /* the program */
-static char directory[PATH_SIZE]; /* for all files of these tests; removed at the end */
 
 void setUp(void) {
 }
 void tearDown(void) {
-}
-
-/* ---- Files ---- */
-
-/* The text with every '@' replaced by the directory and a slash; a few at a time, in turn. */
-static const char *at(const char *text) {
-    static char paths[16][PATH_SIZE];
-    static int next;
-    char *path = paths[next++ % 16];
-    size_t used = 0;
-    for (; *text != '\0'; text++) {
-        const int more = *text == '@' ? snprintf(path + used, PATH_SIZE - used, "%s/", directory)
-                                      : snprintf(path + used, PATH_SIZE - used, "%c", *text);
-        used += (size_t)more;
-        TEST_ASSERT_TRUE(used < PATH_SIZE);
-    }
-    path[used] = '\0';
-    return path;
-}
-
-static int exists(const char *path) {
-    struct stat status;
-    return stat(path, &status) == 0;
-}
-
-/* The whole file as text; empty when there is none. Bytes behind it are zero. */
-static size_t read_file(const char *path, char *text, size_t size) {
-    FILE *stream = fopen(path, "rb");
-    memset(text, 0, size);
-    if (stream == NULL) return 0;
-    const size_t count = fread(text, 1, size - 1, stream);
-    (void)fclose(stream);
-    return count;
-}
-
-static void write_file(const char *path, const void *bytes, size_t count) {
-    FILE *stream = fopen(path, "wb");
-    TEST_ASSERT_NOT_NULL_MESSAGE(stream, path);
-    TEST_ASSERT_EQUAL_UINT(count, fwrite(bytes, 1, count, stream));
-    TEST_ASSERT_EQUAL_INT(0, fclose(stream));
-}
-
-static void write_text(const char *path, const char *text) {
-    write_file(path, text, strlen(text));
-}
-
-static void make_directory(const char *path) {
-    TEST_ASSERT_TRUE_MESSAGE(mkdir(path, 0777) == 0 || errno == EEXIST, path);
-}
-
-static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *where) {
-    (void)status;
-    (void)kind;
-    (void)where;
-    return remove(path);
-}
-
-static int counted_files;
-static int count_entry(const char *path, const struct stat *status, int kind, struct FTW *where) {
-    (void)path;
-    (void)status;
-    (void)where;
-    counted_files += kind == FTW_F;
-    return 0;
-}
-
-static int count_files(const char *path) {
-    counted_files = 0;
-    (void)nftw(path, count_entry, 16, FTW_PHYS);
-    return counted_files;
-}
-
-/* ---- Running the command ---- */
-
-struct outcome {
-    int code; /* the exit status; 1000 and the signal when one ended it */
-    char out[TEXT_SIZE], err[TEXT_SIZE];
-};
-
-/* A child whose streams go to files of its own. */
-struct job {
-    pid_t process;
-    int number;
-};
-
-static const char *stream_path(const struct job *job, const char *name) {
-    char text[64];
-    snprintf(text, sizeof text, "@%s.%d", name, job->number);
-    return at(text);
-}
-
-/* Starts it with these arguments, parted by spaces. */
-static struct job start_job(int number, const char *line) {
-    struct job job = {0, number};
-    char words[PATH_SIZE], *arguments[MOST_ARGUMENTS] = {command}, *rest = NULL;
-    int count = 1;
-    snprintf(words, sizeof words, "%s", at(line));
-    for (char *word = strtok_r(words, " ", &rest); word != NULL; word = strtok_r(NULL, " ", &rest)) {
-        TEST_ASSERT_TRUE(count < MOST_ARGUMENTS - 1);
-        arguments[count++] = word;
-    }
-    arguments[count] = NULL;
-    const char *out_path = stream_path(&job, "stdout"), *err_path = stream_path(&job, "stderr");
-    (void)fflush(stdout);
-    job.process = fork();
-    TEST_ASSERT_TRUE(job.process >= 0);
-    if (job.process == 0) {
-        const int null = open("/dev/null", O_RDONLY), out = open(out_path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        const int err = open(err_path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        if (null >= 0 && out >= 0 && err >= 0 && dup2(null, 0) >= 0 && dup2(out, 1) >= 0 && dup2(err, 2) >= 0)
-            (void)execv(command, arguments);
-        _exit(127);
-    }
-    return job;
-}
-
-static void finish_job(const struct job *job, struct outcome *outcome) {
-    int status = 0;
-    TEST_ASSERT_EQUAL_INT(job->process, waitpid(job->process, &status, 0));
-    outcome->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    (void)read_file(stream_path(job, "stdout"), outcome->out, sizeof outcome->out);
-    (void)read_file(stream_path(job, "stderr"), outcome->err, sizeof outcome->err);
-}
-
-static const struct outcome *run(const char *line) {
-    static struct outcome outcome;
-    const struct job job = start_job(0, line);
-    finish_job(&job, &outcome);
-    return &outcome;
-}
-
-static void run_well(const char *line) {
-    const struct outcome *o = run(line);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, o->code, o->err[0] != '\0' ? o->err : line);
-    TEST_ASSERT_EQUAL_STRING_MESSAGE("", o->err, line);
-}
-
-/* It ends with this code and one line on stderr that begins with the program's name and holds this text; stdout is empty. */
-static void run_badly(int code, const char *text, const char *line) {
-    const struct outcome *o = run(line);
-    char message[2 * PATH_SIZE];
-    const char *end = strchr(o->err, '\n');
-    snprintf(message, sizeof message, "%s: said \"%.600s\"", line, o->err);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(code, o->code, message);
-    TEST_ASSERT_TRUE_MESSAGE(strncmp(o->err, "asttrack: ", 10) == 0, message);
-    TEST_ASSERT_TRUE_MESSAGE(end != NULL && end[1] == '\0', message);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(o->err, at(text)), message);
-    TEST_ASSERT_EQUAL_STRING_MESSAGE("", o->out, message);
 }
 
 /* ---- The result line ---- */
@@ -661,24 +501,9 @@ static void make_inputs(void) {
     write_text(at("@plain"), "a file\n");
 }
 
-/* Where this program lies, for it knows the command from there. */
-static void find_command(const char *program) {
-    const char *given = getenv("AST_COMMAND"), *slash = strrchr(program, '/');
-    if (given != NULL)
-        snprintf(command, sizeof command, "%s", given);
-    else
-        snprintf(command, sizeof command, "%.*s../asttrack", slash != NULL ? (int)(slash - program + 1) : 0, program);
-}
-
 int main(int argc, char **argv) {
-    const char *temporary = getenv("TMPDIR");
     (void)argc;
-    find_command(argv[0]);
-    snprintf(directory, sizeof directory, "%s/asttrack-test-XXXXXX", temporary != NULL ? temporary : "/tmp");
-    if (access(command, X_OK) != 0 || mkdtemp(directory) == NULL) {
-        perror(access(command, X_OK) != 0 ? command : directory);
-        return 1;
-    }
+    if (command_open(argv[0]) != 0) return 1;
     UNITY_BEGIN();
     RUN_TEST(make_inputs);
     RUN_TEST(test_synth_makes_a_sequence);
@@ -698,6 +523,6 @@ int main(int argc, char **argv) {
     RUN_TEST(test_unreadable_frames_are_skipped);
     RUN_TEST(test_jpeg_frames);
     RUN_TEST(test_failed_runs_keep_earlier_outputs);
-    (void)nftw(directory, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    command_close();
     return UNITY_END();
 }

@@ -23,7 +23,6 @@ static int check(int32_t width, int32_t height, int32_t stride) {
 static void test_frame_sides(void) {
     static const int32_t bad[] = {0, -1, INT32_MIN, AST_MAX_FRAME + 1, INT32_MAX};
     TEST_ASSERT_EQUAL_INT(AST_OK, check(1, 1, 1));
-    TEST_ASSERT_EQUAL_INT(AST_OK, check(AST_MAX_FRAME, AST_MAX_FRAME, AST_MAX_FRAME));
     for (size_t b = 0; b < sizeof bad / sizeof bad[0]; b++) {
         TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(bad[b], 10, INT32_MAX));
         TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(10, bad[b], 10));
@@ -32,11 +31,26 @@ static void test_frame_sides(void) {
 
 static void test_frame_stride(void) {
     TEST_ASSERT_EQUAL_INT(AST_OK, check(10, 5, 10));
-    TEST_ASSERT_EQUAL_INT(AST_OK, check(10, 5, INT32_MAX));
+    TEST_ASSERT_EQUAL_INT(AST_OK, check(10, 1, INT32_MAX));
     TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(10, 5, 9));
     TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(10, 5, 0));
     TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(10, 5, -10));
     TEST_ASSERT_EQUAL_INT(AST_E_FRAME, check(10, 5, INT32_MIN));
+}
+
+/* Frames that are no more than addresses allow: with 32 bits the largest are not, with 64 all are. */
+static void test_frame_fits_memory(void) {
+    const int code = sizeof(size_t) < 8 ? AST_E_FRAME : AST_OK;
+    const uint8_t white[6] = {255, 255, 255, 255, 255, 255};
+    uint8_t grey[1] = {0};
+    TEST_ASSERT_EQUAL_INT(code, check(AST_MAX_FRAME, AST_MAX_FRAME, AST_MAX_FRAME));
+    TEST_ASSERT_EQUAL_INT(code, check(10, 2, INT32_MAX));
+    TEST_ASSERT_EQUAL_INT(AST_OK, check(AST_MAX_FRAME, 30000, AST_MAX_FRAME));
+    TEST_ASSERT_EQUAL_INT(AST_OK, ast_grey_from_rgb(grey, INT32_MAX, white, INT32_MAX, 1, 1));
+    TEST_ASSERT_EQUAL_HEX8(255, grey[0]);
+    if (code == AST_OK) return;
+    TEST_ASSERT_EQUAL_INT(code, ast_grey_from_rgb(grey, INT32_MAX, white, 3, 1, 2));
+    TEST_ASSERT_EQUAL_INT(code, ast_grey_from_rgb565(grey, 1, white, INT32_MAX, 1, 2));
 }
 
 static void test_frame_null(void) {
@@ -195,6 +209,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_frame_sides);
     RUN_TEST(test_frame_stride);
+    RUN_TEST(test_frame_fits_memory);
     RUN_TEST(test_frame_null);
     RUN_TEST(test_box_sides);
     RUN_TEST(test_box_position);

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support_faulty.h"
 #include "support_noise.h"
 #include "support_render.h"
 #include "support_tracker.h"
@@ -978,68 +977,6 @@ static void test_step_before_start(void) {
     ast_free(t);
 }
 
-/* A backend that fails at its k-th call, for every k that a start and the steps of some rounds of the bag make: the state stays, and
- * the same frame afterwards gives what it would have given. */
-static void fail_at_every_call(const ast_config *cfg, const struct ast_linalg *la) {
-    int failed_starts = 0, failed_steps = 0;
-    faulty_arm(la, 0);
-    ast_tracker *t = tracker_new(cfg, &faulty_linalg), *control = tracker_new(cfg, &faulty_linalg);
-    TEST_ASSERT_EQUAL_INT(AST_OK, start_with_model(control, cfg->history, 0.0f));
-    for (int code = AST_E_BACKEND, k = 1; code != AST_OK; k++) {
-        faulty_arm(la, k);
-        code = start_with_model(t, cfg->history, 0.0f);
-        TEST_ASSERT_EQUAL_INT(faulty_calls() == k ? AST_E_BACKEND : AST_OK, code);
-        TEST_ASSERT_EQUAL_INT(code == AST_OK ? 1 : AST_E_NOT_STARTED, ast_bag_count(t));
-        failed_starts += code != AST_OK;
-    }
-    TEST_ASSERT_TRUE(failed_starts > 0);
-    for (int f = 1; f <= 7; f++) {
-        const ast_box box = truth(f);
-        const ast_frame frame = render_frame(&scene, &box);
-        struct saved before = saved_from(t);
-        ast_result result, mark, expected;
-        ast_particles p;
-        memset(&mark, 0x5a, sizeof mark);
-        result = mark;
-        for (int code = AST_E_BACKEND, k = 1; code != AST_OK; k++) {
-            faulty_arm(la, k);
-            code = ast_step(t, &frame, &result);
-            TEST_ASSERT_EQUAL_INT(faulty_calls() == k ? AST_E_BACKEND : AST_OK, code);
-            if (code == AST_OK) continue;
-            TEST_ASSERT_EQUAL_MEMORY(&mark, &result, sizeof mark);
-            saved_check(&before, t, "a step that failed");
-            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
-            TEST_ASSERT_NULL(p.distance); /* the one thing that is gone */
-            failed_steps++;
-        }
-        faulty_arm(la, 0);
-        TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(control, &frame, &expected));
-        TEST_ASSERT_EQUAL_MEMORY(&expected, &result, sizeof result);
-        struct saved after = saved_from(control);
-        saved_check(&after, t, "after the failures");
-
-        /* a start that fails in the middle of tracking leaves the tracking */
-        faulty_arm(la, 1);
-        TEST_ASSERT_EQUAL_INT(AST_E_BACKEND, start_with_model(t, cfg->history, 5.0f));
-        saved_check(&after, t, "a start that failed");
-        saved_free(&before);
-        saved_free(&after);
-    }
-    TEST_ASSERT_TRUE(failed_steps > 7);
-    ast_free(t);
-    ast_free(control);
-}
-
-static void test_failing_backend_changes_nothing(void) {
-    static const int variants[] = {0, 1, 2, 12};
-    for (int b = 0; b < BACKENDS; b++) {
-        for (size_t v = 0; v < sizeof variants / sizeof variants[0]; v++) {
-            const ast_config cfg = variant(variants[v]);
-            fail_at_every_call(&cfg, backends[b]);
-        }
-    }
-}
-
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_preset_follows);
@@ -1071,6 +1008,5 @@ int main(void) {
     RUN_TEST(test_extreme_boxes_and_walks);
     RUN_TEST(test_failed_calls_change_nothing);
     RUN_TEST(test_step_before_start);
-    RUN_TEST(test_failing_backend_changes_nothing);
     return UNITY_END();
 }

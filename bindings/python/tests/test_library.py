@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import asttrack
+from header import compile_shared
 
 WHERE = "import asttrack; print(asttrack.library.path)"
 
@@ -50,3 +51,32 @@ def test_it_says_what_it_is() -> None:
     assert asttrack.library.version.split(".")[:2] == asttrack.__version__.split(".")[:2]
     assert asttrack.library.backend in ("builtin", "lapacke")
     assert str(asttrack.library.path) in repr(asttrack.library)
+
+
+DECOY = """
+#include <stdio.h>
+#include <stdlib.h>
+__attribute__((constructor)) static void loaded(void) { puts("a decoy was loaded"); abort(); }
+const char *ast_version(void) { return "0.1.0"; }
+"""
+MAPPED = """
+import os, re, asttrack
+asttrack.Tracker("tiny")
+with open(f"/proc/{os.getpid()}/maps") as maps:
+    print(*sorted({line.split()[-1] for line in maps if "libasttrack" in line}), sep="\\n")
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="no /proc to see what is loaded")
+def test_a_library_of_the_same_name_elsewhere_is_not_loaded(own_library: Path, tmp_path: Path) -> None:
+    """Not from the working directory, not from the loader's path, not from beside the program, under any usual name."""
+    decoy = compile_shared(DECOY, tmp_path)
+    for name in ("libasttrack.so", "libasttrack.so.0", "libasttrack.so.0.1.0"):
+        shutil.copy(decoy, tmp_path / name)
+    program = tmp_path / "program.py"
+    program.write_text(MAPPED)
+    searched = {"LD_LIBRARY_PATH": str(tmp_path), "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
+    environment = {name: value for name, value in os.environ.items() if name != "ASTTRACK_LIBRARY"} | searched
+    run = subprocess.run([sys.executable, str(program)], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert run.stdout.split() == [str(own_library)]
