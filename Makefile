@@ -40,6 +40,8 @@ PYTHON ?= python3
 TESTS ?=
 # arguments of `make bench`, such as --quick (make bench BENCH_ARGS=--help lists them)
 BENCH_ARGS ?=
+# arguments of the Python part of `make performance`, such as --frames 200 (.venv/bin/python -m asttrack bench --help lists them)
+PERFORMANCE_ARGS ?=
 # most stack that a call into the library may take, bytes
 STACK_CEILING ?= 8192
 # where `make install` puts things
@@ -227,12 +229,23 @@ demo: $(BUILDDIR)/asttrack ## render a scene (or take FRAMES=directory), track i
 
 # ---- Speed ----
 
-.PHONY: bench
+.PHONY: bench performance
 bench_program := $(BUILDDIR)/asttrack-bench
 # Which sources these are, where git knows.
 commit = $(shell git describe --always --dirty --abbrev=12 --exclude '*' 2>/dev/null)
 bench: $(bench_program) ## measure speed: ratios, growth, roofline, instructions; BENCH_ARGS=--quick for a rough run
 	@$(bench_program) --out $(BUILDDIR)/bench.json $(if $(commit),--commit $(commit)) $(BENCH_ARGS)
+# The scene of the bench on disk, so that Python's trackers see the same frames.
+performance_scene := $(BUILDDIR)/performance/synth
+performance_sequences = $(performance_scene) $(wildcard ../shared/sequences/girl)
+performance: bench $(BUILDDIR)/asttrack .venv/installed ## measure speed beside OpenCV's trackers; replaces the tables of docs/performance.md
+	@mkdir -p $(dir $(performance_scene))
+	@$(BUILDDIR)/asttrack synth $(performance_scene)
+	+@$(again) BUILDDIR=$(BUILDDIR)/builtin BACKEND=builtin lib-shared
+	+@$(if $(filter yes,$(LAPACKE)),$(again) BUILDDIR=$(BUILDDIR)/lapacke BACKEND=lapacke lib-shared)
+	.venv/bin/python -m asttrack bench --only-trackers --library $(BUILDDIR)/builtin/libasttrack.so \
+	    $(if $(filter yes,$(LAPACKE)),--library $(BUILDDIR)/lapacke/libasttrack.so) $(performance_sequences:%=--sequence %) \
+	    --core $(BUILDDIR)/bench.json --out $(BUILDDIR)/performance.json --markdown docs/performance.md $(PERFORMANCE_ARGS)
 $(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	$(call say,LINK)
 	$(quiet)$(link) -pthread -o $@ $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)

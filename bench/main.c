@@ -165,6 +165,7 @@ int main(int argc, char **argv) {
     struct arguments a;
     memset(&a, 0, sizeof a);
     interrupt_install();
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* tables appear as they are measured, in a pipe too */
     const int end = read_arguments(&a, argc, argv);
     int code = EXIT_OK;
     if (end == OPTION_HELP) {

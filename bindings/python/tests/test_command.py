@@ -371,9 +371,32 @@ def test_bench_measures_stages_growth_and_peers(tmp_path: Path) -> None:
     assert 0.2 < particles["exponent"] < 1.5
     values, medians = ([point[key] for point in particles["points"]] for key in ("value", "median_ms"))
     assert particles["exponent"] == pytest.approx(np.polyfit(np.log(values), np.log(medians), 1)[0], abs=1e-3)
-    assert {tracker["tracker"] for tracker in figures["trackers"]} == {"asttrack:tiny", "medianflow"}
-    for text in ("stage, ms (median)", "exponent", "of them lost"):
+    (race,) = figures["races"]
+    assert {tracker["tracker"] for tracker in race["trackers"]} == {"asttrack:tiny", "medianflow"}
+    for text in ("stage, ms (median)", "exponent", "has the object for"):
         assert text in done.stdout
+
+
+def test_bench_shows_and_keeps_earlier_figures(tmp_path: Path) -> None:
+    first, second, document = tmp_path / "first.json", tmp_path / "second.json", tmp_path / "performance.md"
+    document.write_text("# Speed\n\n<!-- figures: begin -->\n<!-- figures: end -->\n")
+    trackers = "asttrack:tiny,medianflow,kcf"
+    done = command("bench", "--only-trackers", "--passes", 2, "--frames", 8, "--trackers", trackers, "--out", first)
+    assert done.returncode == 0, done.stderr
+    assert not json.loads(first.read_text())["libraries"]
+    again = command("bench", "--read", first, "--out", second, "--markdown", document)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout == done.stdout
+    assert json.loads(second.read_text()) == json.loads(first.read_text())
+    assert "| `medianflow` |" in document.read_text()
+
+
+def test_bench_refuses_what_are_no_figures(tmp_path: Path) -> None:
+    path = tmp_path / "figures.json"
+    path.write_text("{}")
+    assert "not figures that `bench --out` wrote" in complaint(command("bench", "--read", path), 1)
+    assert "not the figures of `make bench`" in complaint(command("bench", "--core", path), 1)
+    assert "--only-trackers" in complaint(command("bench", "--only-trackers", "--trackers", ""), 2)
 
 
 def test_bench_goes_on_without_a_library_that_is_none(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Speed: of each stage, of backends beside each other, with the size of the problem, of OpenCV's trackers on the same frames."""
+"""Speed of the library: of each stage, of builds beside each other, with the size of the problem."""
 
 import json
 import os
@@ -14,14 +14,6 @@ from asttrack.failures import DataError
 from asttrack.opencv import ONE_THREAD
 
 Order = dict[str, Any]
-
-
-def orders(libraries: list[Path], trackers: list[str], common: Order) -> list[tuple[str, Path, Order]]:
-    """What is measured, each in a process of its own: a name to show, the library to load, and the order to it."""
-    own = libraries[0]
-    return [(library.name, library, common) for library in libraries] + [
-        (tracker, own, {**common, "tracker": tracker}) for tracker in trackers
-    ]
 
 
 def libraries_or_own(paths: Iterable[Path]) -> list[Path]:
@@ -70,23 +62,6 @@ def sweeps_table(libraries: list[dict[str, Any]]) -> str:
             lines.append([sweep["name"], str(point["value"]), *cells])
         lines.append([sweep["name"], "exponent", *(f"{library['sweeps'][index]['exponent']:.2f}" for library in libraries)])
     return align(lines)
-
-
-def trackers_table(trackers: list[dict[str, Any]]) -> str:
-    """Trackers on the same frames, the fastest first."""
-    ranked = sorted(trackers, key=lambda tracker: float(tracker["median_ms"]))
-    lines = [
-        [
-            tracker["tracker"],
-            f"{tracker['median_ms']:.4f}",
-            f"{tracker['least_ms']:.4f}",
-            f"{1000 / tracker['median_ms']:.0f}",
-            str(tracker["calls"]),
-            str(tracker["lost"]),
-        ]
-        for tracker in ranked
-    ]
-    return align([["tracker", "ms (median)", "ms (least)", "frames/s", "updates", "of them lost"], [], *lines])
 
 
 def _heads(libraries: list[dict[str, Any]]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Measurements of one library or of OpenCV's trackers, in a process of their own: `python -m asttrack.measuring`.
+"""Measurements of one library, in a process of their own: `python -m asttrack.measuring`.
 
 A library is chosen, and linear algebra told its threads, when a process starts; so `bench` starts one for each. It writes the order
 to stdin and reads the outcome from stdout, both as JSON.
@@ -16,13 +16,13 @@ from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from asttrack import __version__, subspace_distance, subspace_fit
 from asttrack._library import LIBRARY
 from asttrack.errors import AstError
 from asttrack.evaluation.sequence import read_sequence
-from asttrack.evaluation.trackers import Follower, parse_trackers
-from asttrack.failures import DataError, UsageError
+from asttrack.failures import DataError
 from asttrack.frames import Frame
 from asttrack.opencv import one_thread, quiet
 from asttrack.result import Box
@@ -52,14 +52,23 @@ Timing = dict[str, float | int]
 Measure = Callable[[Tracker], Timing]
 
 
-def load_frames(sequence: str | None, count: int) -> tuple[list[Frame], Box]:
-    """The frames to track and the first box: of a sequence, or of the synthetic scene. Raises DataError."""
+def load_film(sequence: str | None, count: int) -> tuple[list[Frame], NDArray[np.float64]]:
+    """The frames to track, in memory, and the object's box in each, a row of nan where it is not known.
+
+    They are the beginning of a sequence, or of the synthetic scene. Raises DataError.
+    """
     if sequence is None:
         scene = Scene(frames=count, occlusion=False)
-        return [scene.frame(index) for index in range(count)], scene.box(0)
+        return [scene.frame(index) for index in range(count)], np.array([scene.box(index) for index in range(count)], float)
     found = read_sequence(Path(sequence))
     pictures = [picture for picture, _ in zip(found.pictures(), range(count), strict=False)]
-    return pictures, Box(*map(float, np.rint(found.truth[0])))
+    return pictures, found.truth[: len(pictures)]
+
+
+def load_frames(sequence: str | None, count: int) -> tuple[list[Frame], Box]:
+    """The frames and the first box, of a sequence rounded to pixels. Raises DataError."""
+    pictures, truth = load_film(sequence, count)
+    return pictures, Box(*map(float, truth[0] if sequence is None else np.rint(truth[0])))
 
 
 def forth_and_back(frames: list[Frame]) -> Iterator[Frame]:
@@ -147,35 +156,14 @@ def measure_library(order: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def measure_tracker(order: dict[str, Any]) -> dict[str, Any]:
-    """An update of one tracker, ours or OpenCV's, on the frames forth and back."""
-    frames, box = load_frames(order["sequence"], order["frames"])
-    (spec,) = parse_trackers(order["tracker"], order["preset"])
-    spec.check()
-    follower = spec.make(1)
-    follower.init(frames[0], Box(*map(round, box)))
-    prepared = [follower.prepare(frame) for frame in frames]
-    # Once forth and back before the clock runs: trackers are slower, or faster, while they know little.
-    coming = forth_and_back(prepared)
-    for _ in range(2 * len(frames)):
-        follower.update(next(coming))
-    lost: list[bool] = []
-    calls = (partial(_note_loss, follower, frame, lost) for frame in coming)
-    return {"tracker": spec.label, **_timing(calls, order["seconds"]), "lost": sum(lost)}
-
-
-def _note_loss(follower: Follower, frame: Frame, lost: list[bool]) -> None:
-    lost.append(not follower.update(frame).ok)
-
-
 def main() -> int:
     """Reads an order, writes what came of it: an object, of which `error` is a line when it failed."""
     one_thread()
     quiet()
     order = json.load(sys.stdin)
     try:
-        outcome = measure_tracker(order) if "tracker" in order else measure_library(order)
-    except (DataError, UsageError, AstError) as error:
+        outcome = measure_library(order)
+    except (DataError, AstError) as error:
         outcome = {"error": str(error)}
     json.dump(outcome, sys.stdout)
     return 0
