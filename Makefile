@@ -105,8 +105,8 @@ c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 # No contraction: a fused multiply-add would make two builds of one source differ in their last bits.
-# No errno: square roots are then the processor's instruction, without a call.
-common_flags = $(CFLAGS) -std=c99 -ffp-contract=off -fno-math-errno $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
+# No errno: square roots are then the processor's instruction, without a call. No traps: comparisons become vector instructions too.
+common_flags = $(CFLAGS) -std=c99 -ffp-contract=off -fno-math-errno -fno-trapping-math $(warnings) $(sanitizers) -Iinclude -MMD -MP $(CPPFLAGS)
 lib_flags = $(common_flags) -Wdouble-promotion -DAST_LINALG=ast_linalg_$(BACKEND)
 command_flags = $(common_flags) -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG)
 test_flags = $(command_flags) -iquote src -iquote examples -iquote bench -isystem $(UNITY_DIR)/src -DUNITY_INCLUDE_DOUBLE= \

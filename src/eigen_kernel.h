@@ -102,21 +102,21 @@ static int eigenvalues_of_three(const ast_real *restrict a, ast_real *restrict v
         const ast_real off = a01[l] * a01[l] + a02[l] * a02[l] + a12[l] * a12[l];
         const ast_real on = (a00[l] - q) * (a00[l] - q) + (a11[l] - q) * (a11[l] - q) + (a22[l] - q) * (a22[l] - q);
         const ast_real p = ast_sqrt((on + 2 * off) / 6);
-        const int apart = p > (ast_real)0.02 * ast_fabs(q);
-        const ast_real per = 1 / (apart ? p : 1);
+        const ast_real per = 1 / (p + AST_REAL_LEAST); /* finite where all are equal */
         const ast_real x = (a00[l] - q) * per, y = (a11[l] - q) * per, z = (a22[l] - q) * per;
         const ast_real u = a01[l] * per, v = a02[l] * per, w = a12[l] * per;
         const ast_real half = (x * (y * z - w * w) - u * (u * z - w * v) + v * (u * w - y * v)) / 2;
-        const int good = apart & (ast_fabs(half) <= (ast_real)0.9999);
-        const ast_real third = ast_acos_lane(good ? half : 0) / 3; /* in 0 .. pi / 3 */
+        const ast_real third = ast_acos_lane(half) / 3; /* in 0 .. pi / 3 */
         const ast_real c = ast_cos_lane(third), s = ast_sqrt(3 * (1 - c * c));
         const ast_real largest = q + 2 * p * c, least = q - p * (c + s);
         values[l] = largest;
         values[2 * AST_LANES + l] = least;
         values[AST_LANES + l] = 3 * q - largest - least;
-        close[l] = good ? 0 : 1;
-        refused += !good;
+        const ast_real by_distance = p > (ast_real)0.02 * ast_fabs(q) ? 0 : 1,
+                       by_angle = ast_fabs(half) <= (ast_real)0.9999 ? 0 : 1;
+        close[l] = by_distance > by_angle ? by_distance : by_angle;
     }
+    for (int l = 0; l < AST_LANES; l++) refused += close[l] > 0;
     return refused;
 }
 

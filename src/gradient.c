@@ -2,13 +2,9 @@
 
 #include <string.h>
 
-#include "vector.h"
-
-/* A response of 1 is one of the local contrast's own size; the blurred ones stay below 255 / MAP_UNIT. */
-#define MAP_UNIT 96.0f
-
 void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct ast_arena *arena) {
     const size_t side = (size_t)cfg->view;
+    g->kernels = ast_kernels();
     g->cells = cfg->gradient_cells;
     g->side = cfg->view;
     g->maps = ast_arena_take(arena, side * side * AST_DIRECTIONS, sizeof *g->maps);
@@ -16,19 +12,15 @@ void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct a
     g->row = ast_arena_take(arena, 2 * side * AST_DIRECTIONS, sizeof *g->row);
 }
 
-static int edge(int i, int count) {
-    return i < 0 ? 0 : i < count ? i : count - 1;
-}
-
 /* Running means over 2 radius + 1 samples, edges replicated, of `lanes` interleaved signals, from `in` to `out`. */
 static void blur_line(const float *in, float *out, int samples, int lanes, int radius) {
     const float share = 1.0f / (float)(2 * radius + 1);
     float sum[AST_DIRECTIONS] = {0};
     for (int i = -radius; i <= radius; i++)
-        for (int l = 0; l < lanes; l++) sum[l] += in[edge(i, samples) * lanes + l];
+        for (int l = 0; l < lanes; l++) sum[l] += in[ast_gradient_edge(i, samples) * lanes + l];
     for (int i = 0; i < samples; i++) {
-        const float *enter = in + (size_t)edge(i + radius + 1, samples) * (size_t)lanes;
-        const float *leave = in + (size_t)edge(i - radius, samples) * (size_t)lanes;
+        const float *enter = in + (size_t)ast_gradient_edge(i + radius + 1, samples) * (size_t)lanes;
+        const float *leave = in + (size_t)ast_gradient_edge(i - radius, samples) * (size_t)lanes;
         for (int l = 0; l < lanes; l++) {
             out[i * lanes + l] = sum[l] * share;
             sum[l] += enter[l] - leave[l];
@@ -54,19 +46,20 @@ static void blur_energy(struct ast_gradient *g, int radius_x, int radius_y) {
 /* Means down the columns of the maps, in place, in whole numbers. */
 static void blur_maps_down(struct ast_gradient *g, int radius) {
     const size_t step = (size_t)g->side * AST_DIRECTIONS;
-    const uint32_t count = (uint32_t)(2 * radius + 1);
+    /* sum / count, rounded, as (sum + count / 2) * inverse / 2^24: exact, because count < 256 and the sum is at most 255 count. */
+    const uint32_t count = (uint32_t)(2 * radius + 1), inverse = (1u << 24) / count + 1;
     uint8_t *line = (uint8_t *)g->row; /* one column */
     for (int x = 0; x < g->width; x++) {
         uint8_t *column = g->maps + (size_t)x * AST_DIRECTIONS;
         uint32_t sum[AST_DIRECTIONS] = {0};
         for (int y = 0; y < g->height; y++) memcpy(line + (size_t)y * AST_DIRECTIONS, column + (size_t)y * step, AST_DIRECTIONS);
         for (int y = -radius; y <= radius; y++)
-            for (int k = 0; k < AST_DIRECTIONS; k++) sum[k] += line[edge(y, g->height) * AST_DIRECTIONS + k];
+            for (int k = 0; k < AST_DIRECTIONS; k++) sum[k] += line[ast_gradient_edge(y, g->height) * AST_DIRECTIONS + k];
         for (int y = 0; y < g->height; y++) {
-            const uint8_t *enter = line + (size_t)edge(y + radius + 1, g->height) * AST_DIRECTIONS;
-            const uint8_t *leave = line + (size_t)edge(y - radius, g->height) * AST_DIRECTIONS;
+            const uint8_t *enter = line + (size_t)ast_gradient_edge(y + radius + 1, g->height) * AST_DIRECTIONS;
+            const uint8_t *leave = line + (size_t)ast_gradient_edge(y - radius, g->height) * AST_DIRECTIONS;
             for (int k = 0; k < AST_DIRECTIONS; k++) {
-                column[(size_t)y * step + (size_t)k] = (uint8_t)((sum[k] + count / 2) / count);
+                column[(size_t)y * step + (size_t)k] = (uint8_t)((sum[k] + count / 2) * inverse >> 24);
                 sum[k] += (uint32_t)enter[k] - (uint32_t)leave[k];
             }
         }
@@ -125,7 +118,7 @@ void ast_gradient_prepare(struct ast_gradient *g, const ast_frame *image, float 
         blur_line(g->row, blurred, g->width, AST_DIRECTIONS, radius_of(cell_x));
         uint8_t *maps = g->maps + (size_t)y * (size_t)g->side * AST_DIRECTIONS;
         for (int i = 0; i < g->width * AST_DIRECTIONS; i++) {
-            const float level = blurred[i] * MAP_UNIT + 0.5f;
+            const float level = blurred[i] * AST_GRADIENT_UNIT + 0.5f;
             maps[i] = level < 255.0f ? (uint8_t)level : 255;
         }
     }
@@ -133,27 +126,5 @@ void ast_gradient_prepare(struct ast_gradient *g, const ast_frame *image, float 
 }
 
 void ast_gradient_cells(const struct ast_gradient *g, const ast_box *window, float *out) {
-    const int length = g->cells * g->cells * AST_DIRECTIONS;
-    for (int r = 0; r < g->cells; r++) {
-        const float y = window->y + ((float)r + 0.5f) * window->h / (float)g->cells - 0.5f;
-        const float floor_y = ast_floorf(y), down = y - floor_y;
-        const uint8_t *upper = g->maps + (size_t)edge((int)floor_y, g->height) * (size_t)g->side * AST_DIRECTIONS;
-        const uint8_t *lower = g->maps + (size_t)edge((int)floor_y + 1, g->height) * (size_t)g->side * AST_DIRECTIONS;
-        for (int c = 0; c < g->cells; c++) {
-            const float x = window->x + ((float)c + 0.5f) * window->w / (float)g->cells - 0.5f;
-            const float floor_x = ast_floorf(x), right = x - floor_x;
-            const size_t x0 = (size_t)edge((int)floor_x, g->width) * AST_DIRECTIONS;
-            const size_t x1 = (size_t)edge((int)floor_x + 1, g->width) * AST_DIRECTIONS;
-            const float top_right = (1.0f - down) * right, top_left = (1.0f - down) - top_right;
-            const float bottom_right = down * right, bottom_left = down - bottom_right;
-            float *cell = out + (size_t)(r * g->cells + c) * AST_DIRECTIONS;
-            for (int k = 0; k < AST_DIRECTIONS; k++) {
-                cell[k] = top_left * (float)upper[x0 + (size_t)k] + top_right * (float)upper[x1 + (size_t)k] +
-                          bottom_left * (float)lower[x0 + (size_t)k] + bottom_right * (float)lower[x1 + (size_t)k];
-            }
-        }
-    }
-    const float norm = (float)ast_sqrt(ast_dot(out, out, length));
-    const float factor = 1.0f / (norm + 0.1f * MAP_UNIT);
-    for (int i = 0; i < length; i++) out[i] *= factor;
+    g->kernels->cells(g, window, out);
 }

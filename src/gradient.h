@@ -4,10 +4,14 @@
 
 #include "arena.h"
 #include "asttrack.h"
+#include "kernels.h"
 
 enum { AST_DIRECTIONS = 8 };
+/* A response of 1 is one of the local contrast's own size; the blurred ones stay below 255 / AST_GRADIENT_UNIT. */
+#define AST_GRADIENT_UNIT 96.0f
 
 struct ast_gradient {
+    const struct ast_kernels *kernels;
     int cells;         /* in each axis; 0: no such feature */
     int side;          /* most pixels of an image in width and height */
     int width, height; /* of the current maps */
@@ -15,6 +19,10 @@ struct ast_gradient {
     float *energy;     /* squared gradient, then its local mean: one float a pixel */
     float *row;        /* one row of maps before and while it is blurred: twice AST_DIRECTIONS floats a pixel */
 };
+
+static inline int ast_gradient_edge(int i, int count) {
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
 
 void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct ast_arena *arena);
 /* Makes the maps of an image, for an object of about this size in it. */

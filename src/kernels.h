@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 
+#include "asttrack.h"
 #include "real.h"
 
 /* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
@@ -30,6 +31,8 @@ enum { AST_PANEL_DEPTH = 64 };
 #define AST_LANES_ALIGNED
 #endif
 
+struct ast_axis;
+struct ast_gradient;
 struct ast_gram;
 struct ast_gram_tile;
 struct ast_gram_model;
@@ -44,6 +47,8 @@ struct ast_kernels {
     /* sums[c * ld_sums + l] += sum over d < depth of panel[d * AST_LANES + l] * columns[c * ld + d], for c < count and every lane. */
     void (*panel_product)(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums);
 
+    /* x'y, in a fixed order: ast_dot. */
+    ast_real (*dot)(const float *x, const float *y, int n);
     /* vector -= origin; the squared length of what is left. */
     ast_real (*depart)(float *vector, const float *origin, int n);
     /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
@@ -53,6 +58,17 @@ struct ast_kernels {
     void (*eigen)(int n, ast_real *a, ast_real *values, ast_real *vectors);
     /* The same without vectors, by the way that is fastest. spare: n + 1 lanes. */
     void (*eigenvalues)(int n, ast_real *a, ast_real *values, ast_real *spare);
+
+    /* The weights of an axis for a window from `start` over `extent` pixels of a source. */
+    void (*axis)(struct ast_axis *axis, float start, float extent, int source_length);
+    /* count <= AST_RESAMPLER_ROWS rows of the grid, ld floats apart, from `row` on. */
+    void (*rows)(const struct ast_axis *columns, const struct ast_axis *rows, const ast_frame *frame, int row, int count,
+                 float *line, float *out, size_t ld);
+    /* A patch from 0 .. 255 to its normalised form (AST_NORMALISE_*). */
+    void (*normalise)(float *patch, int length, int normalisation);
+
+    /* The cells of a window of the image whose maps g holds. */
+    void (*cells)(const struct ast_gradient *g, const ast_box *window, float *out);
 
     /* The stages of the Gram scoring for the candidates of a tile (score_gram.c). */
     void (*project)(const struct ast_gram *s, struct ast_gram_tile *t);

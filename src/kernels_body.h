@@ -1,12 +1,35 @@
-/* All kernels of one instruction set: included by one file each, which says how (AST_KERNELS, AST_VECTOR_BYTES, AST_PANEL_COLUMNS,
- * AST_PANEL_VECTORS) and aims the compiler at it. */
+/* All kernels of one instruction set: included by one file each, which says how (AST_KERNELS, AST_KERNELS_NAME, AST_VECTOR_BYTES,
+ * AST_PANEL_COLUMNS, AST_PANEL_VECTORS) and aims the compiler at it. */
 #include "kernels.h"
 
 #include "product_kernel.h"
 
+#include "vector_kernel.h"
+
 #include "eigen_kernel.h"
+
+#include "resample_kernel.h"
+
+#include "patch_kernel.h"
+
+#include "gradient_kernel.h"
 
 #include "score_kernel.h"
 
-const struct ast_kernels AST_KERNELS = {AST_KERNELS_NAME, pack,    panel_product, depart, solve, eigen,
-                                        eigenvalues,      project, decompose,     pair};
+const struct ast_kernels AST_KERNELS = {
+    .name = AST_KERNELS_NAME,
+    .pack = pack,
+    .panel_product = panel_product,
+    .dot = dot,
+    .depart = depart,
+    .solve = solve,
+    .eigen = eigen,
+    .eigenvalues = eigenvalues,
+    .axis = axis,
+    .rows = rows,
+    .normalise = normalise,
+    .cells = cells,
+    .project = project,
+    .decompose = decompose,
+    .pair = pair,
+};

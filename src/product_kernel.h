@@ -1,33 +1,19 @@
 /* The matrix product's innermost part: lanes of one operand against columns of the other. Each sum runs over its elements in order, in
  * a lane of its own, so the width of a vector does not show in the result. */
 
-/* A vector of floats at any address. Compilers without vectors get one float, and the same order. */
-#if AST_VECTOR_BYTES > 4
-typedef float vector __attribute__((vector_size(AST_VECTOR_BYTES), aligned(4), may_alias));
-typedef float four __attribute__((vector_size(16), aligned(4), may_alias));
-#define AST_ALWAYS_INLINE static inline __attribute__((always_inline))
-#else
-typedef float vector;
-#define AST_ALWAYS_INLINE static inline
-#endif
-enum { WIDTH = AST_VECTOR_BYTES / (int)sizeof(float), VECTORS = AST_PANEL_VECTORS, COLUMNS = AST_PANEL_COLUMNS };
+#include "kernel_vectors.h"
+
+enum { VECTORS = AST_PANEL_VECTORS, COLUMNS = AST_PANEL_COLUMNS };
 
 static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
     int d = 0;
-#if AST_VECTOR_BYTES > 4
-    /* Four by four, transposed in registers. */
+#if AST_HAS_VECTORS
     for (; d + 4 <= depth; d += 4) {
         for (int l = 0; l < AST_LANES; l += 4) {
-            float *to = panel + (size_t)d * AST_LANES + l;
             const float *from = m + d;
-            const four x = *(const four *)(from + (size_t)(l < used ? l : 0) * ld);
-            const four y = *(const four *)(from + (size_t)(l + 1 < used ? l + 1 : 0) * ld);
-            const four z = *(const four *)(from + (size_t)(l + 2 < used ? l + 2 : 0) * ld);
-            const four w = *(const four *)(from + (size_t)(l + 3 < used ? l + 3 : 0) * ld);
-            *(four *)to = (four){x[0], y[0], z[0], w[0]};
-            *(four *)(to + AST_LANES) = (four){x[1], y[1], z[1], w[1]};
-            *(four *)(to + 2 * AST_LANES) = (four){x[2], y[2], z[2], w[2]};
-            *(four *)(to + 3 * AST_LANES) = (four){x[3], y[3], z[3], w[3]};
+            transpose_four(from + (size_t)(l < used ? l : 0) * ld, from + (size_t)(l + 1 < used ? l + 1 : 0) * ld,
+                           from + (size_t)(l + 2 < used ? l + 2 : 0) * ld, from + (size_t)(l + 3 < used ? l + 3 : 0) * ld,
+                           panel + (size_t)d * AST_LANES + l, AST_LANES);
         }
     }
 #endif

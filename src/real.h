@@ -23,6 +23,7 @@ typedef AST_REAL ast_real;
 
 #if AST_REAL_IS_DOUBLE
 #define AST_REAL_EPSILON DBL_EPSILON
+#define AST_REAL_LEAST DBL_MIN
 static inline ast_real ast_sqrt(ast_real v) {
     return AST_SQUARE_ROOT(v);
 }
@@ -38,6 +39,7 @@ static inline ast_real ast_exp(ast_real v) {
 }
 #else
 #define AST_REAL_EPSILON FLT_EPSILON
+#define AST_REAL_LEAST FLT_MIN
 static inline ast_real ast_sqrt(ast_real v) {
     return ast_sqrtf(v);
 }

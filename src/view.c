@@ -8,7 +8,7 @@ void ast_view_layout(struct ast_view *view, const ast_config *cfg, struct ast_ar
     view->object = cfg->view_object;
     if (view->side == 0) return;
     view->pixels = ast_arena_take(arena, side * side, sizeof *view->pixels);
-    view->row = ast_arena_take(arena, side, sizeof *view->row);
+    view->rows = ast_arena_take(arena, side * AST_RESAMPLER_ROWS, sizeof *view->rows);
     ast_resampler_layout(&view->resampler, view->side, view->side, arena);
 }
 
@@ -42,10 +42,14 @@ void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box 
     const int height = within(ast_ceilf((float)(bottom - top) / view->pixel), 1, view->side);
     const ast_box window = {(float)left, (float)top, (float)width * view->pixel, (float)height * view->pixel};
     ast_resampler_aim(&view->resampler, frame, &window, width, height);
-    for (int r = 0; r < height; r++) {
-        uint8_t *out = view->pixels + (size_t)r * (size_t)view->side;
-        ast_resampler_row(&view->resampler, frame, r, view->row);
-        for (int c = 0; c < width; c++) out[c] = (uint8_t)within(view->row[c] + 0.5f, 0, 255);
+    for (int r = 0; r < height; r += AST_RESAMPLER_ROWS) {
+        const int rows = height - r < AST_RESAMPLER_ROWS ? height - r : AST_RESAMPLER_ROWS;
+        ast_resampler_rows(&view->resampler, frame, r, rows, view->rows, (size_t)view->side);
+        for (int k = 0; k < rows; k++) {
+            uint8_t *out = view->pixels + (size_t)(r + k) * (size_t)view->side;
+            const float *row = view->rows + (size_t)k * (size_t)view->side;
+            for (int c = 0; c < width; c++) out[c] = (uint8_t)within(row[c] + 0.5f, 0, 255);
+        }
     }
     view->image.pixels = view->pixels;
     view->image.width = width;

@@ -72,7 +72,7 @@ static void test_patch_is_the_window_in_0_to_1(void) {
     ast_sampler_patch(&sampler, &frame, &window, patch);
     ast_resampler_aim(&sampler.resampler, &frame, &window, WIDTH, HEIGHT);
     for (int r = 0; r < HEIGHT; r++) {
-        ast_resampler_row(&sampler.resampler, &frame, r, row);
+        ast_resampler_rows(&sampler.resampler, &frame, r, 1, row, 0);
         for (int c = 0; c < WIDTH; c++) TEST_ASSERT_FLOAT_WITHIN(1e-6f, row[c] / 255.0f, patch[r * WIDTH + c]);
     }
 }

@@ -46,7 +46,10 @@ void tearDown(void) {
 /* Fills `out` with the window, levels from 0 to 1. */
 static void resample(const ast_frame *frame, const ast_box *window, float *out) {
     ast_resampler_aim(&resampler, frame, window, grid_width, grid_height);
-    for (int r = 0; r < grid_height; r++) ast_resampler_row(&resampler, frame, r, out + r * grid_width);
+    for (int r = 0; r < grid_height; r += AST_RESAMPLER_ROWS) {
+        const int rows = grid_height - r < AST_RESAMPLER_ROWS ? grid_height - r : AST_RESAMPLER_ROWS;
+        ast_resampler_rows(&resampler, frame, r, rows, out + r * grid_width, (size_t)grid_width);
+    }
     for (int i = 0; i < grid_width * grid_height; i++) out[i] /= 255.0f;
 }
 

@@ -205,7 +205,7 @@ static void test_pixels_are_the_resampled_window(void) {
                                 (float)view.image.height * view.pixel};
         ast_resampler_aim(&resampler, &frame, &window, view.image.width, view.image.height);
         for (int y = 0; y < view.image.height; y++) {
-            ast_resampler_row(&resampler, &frame, y, line);
+            ast_resampler_rows(&resampler, &frame, y, 1, line, 0);
             for (int x = 0; x < view.image.width; x++)
                 TEST_ASSERT_DOUBLE_WITHIN(0.5 + 1e-5, (double)line[x], row(&view.image, y)[x]);
         }

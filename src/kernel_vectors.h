@@ -1,0 +1,52 @@
+/* Vectors of the compiler's own making (GNU C), as wide as the file that includes this says (AST_VECTOR_BYTES): no instruction is named.
+ * Without them a vector is one number, and every sum has the same order. */
+#ifndef AST_KERNEL_VECTORS_H
+#define AST_KERNEL_VECTORS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if AST_VECTOR_BYTES > 4
+#define AST_HAS_VECTORS 1
+#define AST_ALWAYS_INLINE static inline __attribute__((always_inline))
+/* At any address. */
+typedef float vector __attribute__((vector_size(AST_VECTOR_BYTES), aligned(4), may_alias));
+typedef float four __attribute__((vector_size(16), aligned(4), may_alias));
+#else
+#define AST_HAS_VECTORS 0
+#define AST_ALWAYS_INLINE static inline
+typedef float vector;
+#endif
+enum { WIDTH = AST_VECTOR_BYTES / (int)sizeof(float) };
+
+#if AST_HAS_VECTORS
+/* Four times four numbers, transposed: element i of a, b, c and d to out + i * step. */
+AST_ALWAYS_INLINE void transpose_four(const float *a, const float *b, const float *c, const float *d, float *out, size_t step) {
+    const four x = *(const four *)a, y = *(const four *)b, z = *(const four *)c, w = *(const four *)d;
+    *(four *)out = (four){x[0], y[0], z[0], w[0]};
+    *(four *)(out + step) = (four){x[1], y[1], z[1], w[1]};
+    *(four *)(out + 2 * step) = (four){x[2], y[2], z[2], w[2]};
+    *(four *)(out + 3 * step) = (four){x[3], y[3], z[3], w[3]};
+}
+#endif
+
+#if AST_HAS_VECTORS
+/* Bytes become numbers twice as wide in each step, which is what processors have instructions for. Passed by address: how vectors wider
+ * than the processor's are returned differs from one to the next. */
+typedef uint8_t eight_bytes __attribute__((vector_size(8), aligned(1), may_alias));
+typedef uint16_t eight_halves __attribute__((vector_size(16)));
+typedef int32_t eight_words __attribute__((vector_size(32)));
+typedef float eight __attribute__((vector_size(32), aligned(4), may_alias));
+typedef uint8_t sixteen_bytes __attribute__((vector_size(16), aligned(1), may_alias));
+typedef uint16_t sixteen_halves __attribute__((vector_size(32)));
+typedef int32_t sixteen_words __attribute__((vector_size(64)));
+typedef float sixteen __attribute__((vector_size(64), aligned(4), may_alias));
+#define EIGHT_NUMBERS(bytes)                                                                                                       \
+    __builtin_convertvector(                                                                                                       \
+        __builtin_convertvector(__builtin_convertvector(*(const eight_bytes *)(bytes), eight_halves), eight_words), eight)
+#define SIXTEEN_NUMBERS(bytes)                                                                                                     \
+    __builtin_convertvector(                                                                                                       \
+        __builtin_convertvector(__builtin_convertvector(*(const sixteen_bytes *)(bytes), sixteen_halves), sixteen_words), sixteen)
+#endif
+
+#endif
