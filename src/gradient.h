@@ -16,7 +16,7 @@ struct ast_gradient {
     int side;          /* most pixels of an image in width and height */
     int width, height; /* of the current maps */
     uint8_t *maps;     /* AST_DIRECTIONS interleaved a pixel, in steps that keep the blurred responses' precision in a byte */
-    float *energy;     /* squared gradient, then its local mean: one float a pixel */
+    float *energy;     /* squared gradient, then its local mean: one float a pixel, in the maps' memory while they are made */
     float *row;        /* one row of maps before and while it is blurred: twice AST_DIRECTIONS floats a pixel */
 };
 

@@ -3,5 +3,6 @@
 #include "kernels.h"
 
 ast_real ast_dot(const float *x, const float *y, int n) {
-    return ast_kernels()->dot(x, y, n);
+    const struct ast_kernels *kernels = ast_kernels();
+    return kernels->dot(x, y, n);
 }
