@@ -171,15 +171,6 @@ int ast_config_preset(ast_config *cfg, int preset) {
         cfg->patch_height = 16;
         cfg->bag_size = 5;
         cfg->bag_interval = 10;
-        /* What costs neither memory nor time, and a camera left to itself needs: to find again what was lost. */
-        cfg->keep_first = AST_YES;
-        cfg->guard = 0.6f;
-        cfg->reacquire = 0.6f;
-        cfg->lost_after = 2;
-        cfg->walk_y = 8.0f;
-        cfg->draws = AST_DRAWS_QUASI;
-        cfg->likelihood = AST_LIKELIHOOD_SCALED;
-        cfg->sigma = 0.1f;
         return AST_OK;
     default: return AST_E_RANGE;
     }
