@@ -69,3 +69,40 @@ test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emu
 	    $(foreach v,$(firmware_variants),$(v):$($(v)_real):$($(v)_board))
 
 -include $(wildcard $(firmware_dir)/*/*/*.d)
+
+# ---- Budgets for a Cortex-M7 with a single-precision FPU, -Os ----
+
+# most RAM for the tiny preset's arena and stack, bytes
+FIRMWARE_RAM ?= 65536
+# most stack that a call into the library may take there, bytes
+FIRMWARE_STACK ?= 5632
+# most code and constants without save and restore and diagnostics, bytes
+FIRMWARE_CODE ?= 32768
+
+# What a program that tracks does not call: save and restore, looking inside, texts, the geometry alone, colour conversion.
+firmware_apart := state inspect error geometry
+firmware_lib_objects = $(call firmware_objects,m7-single,)
+
+.PHONY: size-firmware stack-firmware link-firmware test-cross test-cross-short
+size-firmware: $(firmware_lib_objects) $(firmware_dir)/host-float/program ## code and constants on a Cortex-M7; fails above FIRMWARE_CODE
+	@$(ARM_PREFIX)size $(firmware_lib_objects) | awk -v most=$(FIRMWARE_CODE) -v apart=' $(firmware_apart) ' 'NR > 1 { \
+	    name = $$6; sub(/.*\//, "", name); sub(/[.]o$$/, "", name); all += $$1; data += $$2 + $$3; \
+	    if (!index(apart, " " name " ")) core += $$1 } \
+	    END { printf "Cortex-M7, -Os: code and constants %d bytes, without save, restore and diagnostics %d (at most %d), data %d\n", \
+	    all, core, most, data; exit core > most || data > 0 }'
+
+stack-firmware: ## the same for the stack; fails above FIRMWARE_STACK
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/stack-m7 CC=$(ARM_PREFIX)gcc OBJDUMP=$(ARM_PREFIX)objdump BACKEND=builtin \
+	    LAPACKE=no JPEG=no CPPFLAGS='-DAST_REAL=float -DAST_NO_HEAP' STACK_CEILING=$(FIRMWARE_STACK) CFLAGS='-Os -mthumb \
+	    -mfloat-abi=hard $(m7-single_cpu) -ffunction-sections -fno-jump-tables -fcallgraph-info=su' stack-objects
+
+# The library on its own, without any C library: nothing but these may be missing.
+link-firmware: $(firmware_lib_objects) ## fails when the library needs more of a C library than memcpy, memset and memcmp
+	@missing=$$($(ARM_PREFIX)ld -r -o $(firmware_dir)/whole.o $(firmware_lib_objects) && $(ARM_PREFIX)nm -u $(firmware_dir)/whole.o | \
+	    awk '{ print $$2 }' | grep -v -x -E 'memcpy|memset|memcmp' | paste -s -d ' '); \
+	if [ -n "$$missing" ]; then echo "needed from outside: $$missing" >&2; exit 1; fi; echo "needs memcpy, memset and memcmp, nothing else"
+
+test-cross: ## the same bits on every processor, by gcc and clang, -O0 to -O3 (about 20 minutes)
+	@scripts/test_cross.sh $(BUILDDIR)/cross whole
+test-cross-short: ## the same by gcc, -O0 and -O3 (about 3 minutes)
+	@scripts/test_cross.sh $(BUILDDIR)/cross short
