@@ -4,6 +4,7 @@
 #define BOARD_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 /* Memory that a reset leaves alone, as flash is: zeros at first. */
 enum { BOARD_FLASH = 40 * 1024 };
@@ -15,6 +16,9 @@ void board_write(const char *text);
 void board_start_interrupts(void (*handler)(void));
 /* Returns after the next interrupt, or before. */
 void board_wait(void);
+/* Nanoseconds since the call before, up to 600 million: with the emulator's -icount shift=0, instructions. Not together with
+ * interrupts; 0 where nobody knows. */
+uint32_t board_elapsed(void);
 /* Starts the program again from its entry, all memory but board_flash as at first. */
 void board_reset(void);
 /* Ends: 0 is success. */

@@ -25,6 +25,10 @@ void board_start_interrupts(void (*handler)(void)) {
     tick_handler = handler;
 }
 
+uint32_t board_elapsed(void) {
+    return 0;
+}
+
 void board_wait(void) {
     tick_handler();
 }

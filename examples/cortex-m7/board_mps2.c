@@ -56,6 +56,16 @@ void board_start_interrupts(void (*handler)(void)) {
     SYST_CSR = 7; /* processor clock, interrupt, on */
 }
 
+uint32_t board_elapsed(void) {
+    enum { NANOSECONDS = 40, WRAP = 0xFFFFFF }; /* of a cycle; of the counter, which counts down */
+    const uint32_t count = SYST_CVR;
+    const int running = (SYST_CSR & 1u) != 0;
+    SYST_RVR = WRAP;
+    SYST_CVR = 0;
+    SYST_CSR = 5; /* processor clock, no interrupt, on */
+    return running ? (WRAP - count) * NANOSECONDS : 0;
+}
+
 void board_wait(void) {
     __asm__ volatile("wfi" ::: "memory");
 }

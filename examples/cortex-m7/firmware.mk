@@ -64,6 +64,16 @@ $(firmware_hosts): $(firmware_dir)/host-%/program: $$(call firmware_objects,host
 	$(call say,LINK)
 	$(quiet)$(CC) -o $@ $^
 
+# Instructions, counted by the emulator; it has room for what a microcontroller's RAM has not.
+$(firmware_dir)/m7-single/instructions.elf: $(call firmware_objects,m7-single,instructions say small_scene board_mps2) examples/cortex-m7/mps2.ld
+	$(call say,LINK)
+	$(quiet)$(ARM_PREFIX)gcc -mthumb -mfloat-abi=hard $(m7-single_cpu) -nostartfiles -T examples/cortex-m7/mps2.ld -Wl,--gc-sections \
+	    -Wl,--fatal-warnings -Wl,--defsym=ram_size=4M -o $@ $(filter %.o,$^)
+.PHONY: instructions-firmware
+instructions-firmware: $(firmware_dir)/m7-single/instructions.elf ## instructions a frame on a Cortex-M7, counted by the emulator
+	@timeout 500 $(QEMU_ARM) -M mps2-an500 -icount shift=0 -nographic -monitor none -serial none \
+	    -semihosting-config enable=on,target=native -kernel $<
+
 test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emulator and compare with the host, bit for bit
 	@ARM_PREFIX=$(ARM_PREFIX) QEMU_ARM=$(QEMU_ARM) scripts/test_firmware.sh $(firmware_dir) \
 	    $(foreach v,$(firmware_variants),$(v):$($(v)_real):$($(v)_board))
