@@ -85,7 +85,7 @@ test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emu
 # most RAM for the tiny preset's arena and stack, bytes
 FIRMWARE_RAM ?= 65536
 # most stack that a call into the library may take there, bytes
-FIRMWARE_STACK ?= 5632
+FIRMWARE_STACK ?= 6144
 # most code and constants without save and restore and diagnostics, bytes
 FIRMWARE_CODE ?= 32768
 

@@ -18,7 +18,7 @@ enum {
     FRAMES_AFTER_RESET = 20,
     FRAMES_TO_RECOVER = 60, /* at most */
     STUCK_AFTER = 3,        /* equal pictures in a row: a real sensor's noise never repeats */
-    ARENA = 64 * 1024,      /* bytes */
+    ARENA = 96 * 1024,      /* bytes */
     FAR = 10                /* pixels between the centres of box and truth beyond which the object is not followed */
 };
 
@@ -239,7 +239,7 @@ static ast_tracker *begin(const ast_config *cfg) {
     expect(ast_init(&t, cfg, arena, needed - 1) == AST_E_ARENA && t == NULL, "an arena one byte short is refused");
     expect(ast_init(&t, cfg, NULL, 0) == AST_E_NO_HEAP && t == NULL, "there is no heap to fall back on");
     memset(arena, 0xa5, sizeof arena);
-    const int code = ast_init(&t, cfg, arena, needed);
+    const int code = ast_init(&t, cfg, arena, sizeof arena);
     if (code != AST_OK) say_code("init", code);
     return code == AST_OK ? t : NULL;
 }
