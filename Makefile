@@ -100,7 +100,7 @@ test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
 fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] tests/*.[ch] bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] examples/*/*.[ch] tests/*.[ch] tests/cross/*.c bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c)
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -469,6 +469,10 @@ uninstall: ## remove what `make install` put there
 	    $(DESTDIR)$(LIBDIR)/libasttrack.so $(DESTDIR)$(LIBDIR)/libasttrack.so.$(major) \
 	    $(DESTDIR)$(LIBDIR)/$(notdir $(shared_lib)) $(DESTDIR)$(LIBDIR)/pkgconfig/asttrack.pc
 
+# ---- Firmware ----
+
+include examples/cortex-m7/firmware.mk
+
 # ---- Housekeeping ----
 
 .PHONY: clean distclean help
@@ -479,9 +483,9 @@ distclean: clean ## remove also what was fetched: Unity, the virtual environment
 	rm -rf .unity .venv
 help: ## this text
 	@echo "targets:"
-	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/\1\t\2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | awk -F '\t' '{ printf "  %-14s %s\n", $$1, $$2 }'
 	@echo "variables (make NAME=value):"
 	@awk '/^# / { said = substr($$0, 3) } /^[A-Z_]+ \?=/ { if (said) printf "  %-14s %s\n", $$1, said; said = "" }' \
-	    $(firstword $(MAKEFILE_LIST))
+	    $(filter Makefile %.mk,$(MAKEFILE_LIST))
 
 -include $(wildcard $(BUILDDIR)/obj/*/*.d)

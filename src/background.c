@@ -19,7 +19,7 @@ void ast_background_average(struct ast_background *b) {
     for (int d = 0; d < b->dim; d++) {
         ast_real sum = 0;
         for (int z = 0; z < b->size; z++) sum += (ast_real)b->set[(size_t)z * (size_t)b->stride + (size_t)d];
-        b->mean[d] = (float)(sum / b->size);
+        b->mean[d] = (float)(sum / (ast_real)b->size);
     }
     memset(b->changed, 1, (size_t)(1 + b->size));
 }

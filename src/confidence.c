@@ -10,9 +10,9 @@ static ast_real correlation(const float *x, const float *y, int n) {
         sum_x += (ast_real)x[d];
         sum_y += (ast_real)y[d];
     }
-    const ast_real cross = ast_dot(x, y, n) - sum_x * sum_y / n;
-    const ast_real xx = ast_dot(x, x, n) - sum_x * sum_x / n, yy = ast_dot(y, y, n) - sum_y * sum_y / n;
-    const ast_real flat = (ast_real)1e-9 * n;
+    const ast_real cross = ast_dot(x, y, n) - sum_x * sum_y / (ast_real)n;
+    const ast_real xx = ast_dot(x, x, n) - sum_x * sum_x / (ast_real)n, yy = ast_dot(y, y, n) - sum_y * sum_y / (ast_real)n;
+    const ast_real flat = (ast_real)1e-9 * (ast_real)n;
     return xx > flat && yy > flat ? cross / ast_sqrt(xx * yy) : 0;
 }
 

@@ -13,7 +13,7 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
             if (v < least) least = v;
         }
         ast_real mean = 0;
-        for (int i = 0; i < count; i++) mean += (ast_real)distance[(size_t)i * (size_t)models + (size_t)j] / count;
+        for (int i = 0; i < count; i++) mean += (ast_real)distance[(size_t)i * (size_t)models + (size_t)j] / (ast_real)count;
         ast_real scale = (ast_real)cfg->sigma;
         if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= mean - (ast_real)least;
         const ast_real rate = scale > (ast_real)FLT_MIN ? 1 / scale : 0; /* all particles alike: all likelihoods too */
@@ -21,7 +21,7 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
         ast_real sum = 0;
         for (int i = 0; i < count; i++)
             sum += ast_exp(-((ast_real)distance[(size_t)i * (size_t)models + (size_t)j] - (ast_real)least) * rate);
-        const ast_real share = 1 / (sum * models);
+        const ast_real share = 1 / (sum * (ast_real)models);
         for (int i = 0; i < count; i++)
             weight[i] +=
                 (float)(share * ast_exp(-((ast_real)distance[(size_t)i * (size_t)models + (size_t)j] - (ast_real)least) * rate));

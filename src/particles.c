@@ -20,7 +20,7 @@ void ast_cloud_resample(const struct ast_cloud *from, struct ast_cloud *to, stru
     ast_real total = 0;
     for (int i = 0; i < from->count; i++) total += (ast_real)from->weight[i];
 
-    const ast_real step = total / to->count;
+    const ast_real step = total / (ast_real)to->count;
     ast_real reached = (ast_real)from->weight[0];
     int source = 0;
     for (int i = 0; i < to->count; i++) {

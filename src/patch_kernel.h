@@ -11,7 +11,7 @@ static void normalise(float *restrict patch, int length, int normalisation) {
         for (int l = 0; l < SUMS; l++) sums[l] += (ast_real)patch[i + l];
     for (; i < length; i++) sums[0] += (ast_real)patch[i];
     for (int l = 0; l < SUMS; l++) sum += sums[l];
-    const float mean = (float)(sum / length);
+    const float mean = (float)(sum / (ast_real)length);
     for (int l = 0; l < SUMS; l++) sums[l] = 0;
     for (i = 0; i + SUMS <= length; i += SUMS) {
         for (int l = 0; l < SUMS; l++) {

@@ -237,7 +237,7 @@ static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
     const int failed = decompose_history(s, scene);
     if (failed) return failed;
     s->share = 1 / (ast_real)(p + 1);
-    s->gamma = scene->cfg->basis == AST_BASIS_CENTRED ? (ast_real)p / (p + 1) : 1;
+    s->gamma = scene->cfg->basis == AST_BASIS_CENTRED ? (ast_real)p / (ast_real)(p + 1) : 1;
     s->alpha = scene->cfg->model == AST_MODEL_LINEAR ? -1 : (ast_real)scene->cfg->alpha;
     update_products(s, scene, columns);
 

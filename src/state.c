@@ -51,6 +51,13 @@ static void code_int(struct codec *c, int *value, int least, int most) {
     if (c->mode == CODEC_READ) *value = (int)bits;
 }
 
+/* The same for a type that is no int everywhere. */
+static void code_int32(struct codec *c, int32_t *value, int32_t least, int32_t most) {
+    int wide = (int)*value;
+    code_int(c, &wide, (int)least, (int)most);
+    *value = wide;
+}
+
 static void code_float(struct codec *c, float *value, float least, float most) {
     uint32_t word;
     memcpy(&word, value, sizeof word);
@@ -88,13 +95,13 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_float(c, &t->velocity_x, -limit, limit);
     code_float(c, &t->velocity_y, -limit, limit);
     code_u64(c, &t->random.state);
-    code_int(c, &t->confidence.status, AST_TRACKING, AST_LOST);
-    code_int(c, &t->confidence.low, 0, t->cfg.lost_after);
+    code_int32(c, &t->confidence.status, AST_TRACKING, AST_LOST);
+    code_int32(c, &t->confidence.low, 0, t->cfg.lost_after);
 
     code_float(c, &t->guard.usual.start, -SHARE_LIMIT, SHARE_LIMIT);
     code_float(c, &t->guard.usual.known, -SHARE_LIMIT, SHARE_LIMIT);
-    code_int(c, &t->guard.low, 0, AST_GUARD_LONG);
-    code_int(c, &t->guard.lost, 0, 1);
+    code_int32(c, &t->guard.low, 0, AST_GUARD_LONG);
+    code_int32(c, &t->guard.lost, 0, 1);
     code_float(c, &t->guard.good.x, -limit, limit);
     code_float(c, &t->guard.good.y, -limit, limit);
     code_float(c, &t->guard.good.scale, t->cfg.scale_min, t->cfg.scale_max);

@@ -19,7 +19,7 @@ void ast_images_mean(const struct ast_images *images, float *mean) {
     for (int d = 0; d < images->dim; d++) {
         ast_real sum = 0;
         for (int j = 0; j < images->count; j++) sum += (ast_real)images->column[j][d];
-        mean[d] = (float)(sum / images->count);
+        mean[d] = (float)(sum / (ast_real)images->count);
     }
 }
 

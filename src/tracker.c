@@ -214,7 +214,7 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
         if (error != AST_OK) return error;
     }
     /* What can fail comes first, and works on scratch: the patches given go to the tile, the first model's subspace to the fit. */
-    const struct ast_tracker before = *t; /* the object's size and the view, which making patches needs */
+    const float width_before = t->box_width, height_before = t->box_height; /* making patches needs the object's size */
     const int32_t used = count < t->cfg.history ? count : t->cfg.history;
     const struct ast_state last = state_of(&t->cfg, &boxes[count - 1], &boxes[0]);
     const float *column[AST_MAX_HISTORY];
@@ -234,7 +234,8 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
     float *background_mean = t->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
     if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, t->basis);
     if (used == t->cfg.history && fit_images(t, &images, background_mean, &rank) != AST_OK) {
-        *t = before;
+        t->box_width = width_before;
+        t->box_height = height_before;
         return AST_E_BACKEND;
     }
 

@@ -1,0 +1,118 @@
+# The firmware: the library and its example for bare Cortex-M processors, run in an emulator and compared with the host.
+
+# prefix of the cross compiler for Cortex-M
+ARM_PREFIX ?= arm-none-eabi-
+# emulator of Arm boards
+QEMU_ARM ?= qemu-system-arm
+
+# A variant: processor, FPU, the type of ast_real, emulated board. The processors with a single-precision FPU compute in float alone.
+firmware_variants := m7-double m7-single m4-single
+m7-double_cpu := -mcpu=cortex-m7 -mfpu=fpv5-d16
+m7-double_real := double
+m7-double_board := mps2-an500
+m7-single_cpu := -mcpu=cortex-m7 -mfpu=fpv5-sp-d16
+m7-single_real := float
+m7-single_board := mps2-an500
+m4-single_cpu := -mcpu=cortex-m4 -mfpu=fpv4-sp-d16
+m4-single_real := float
+m4-single_board := mps2-an386
+
+firmware_dir := $(BUILDDIR)/firmware
+firmware_lib_sources := $(core_sources) src/linalg_builtin.c
+firmware_flags = -std=c99 -ffp-contract=off -fno-math-errno $(filter-out -Werror,$(warnings)) -Werror -Wdouble-promotion -Iinclude \
+	-MMD -MP -DAST_NO_HEAP
+firmware_target_flags = -Os -g -mthumb -mfloat-abi=hard -ffunction-sections -fdata-sections
+firmware_program := program say camera small_scene
+firmware_images := $(firmware_variants:%=$(firmware_dir)/%/program.elf)
+firmware_hosts := $(firmware_dir)/host-float/program $(firmware_dir)/host-double/program $(firmware_dir)/host-minutes/program
+
+.PHONY: firmware test-firmware
+firmware: $(firmware_images) ## the Cortex-M images, without operating system and heap
+	@$(ARM_PREFIX)size $(firmware_images)
+
+$(firmware_dir)/flags: export recorded = $(ARM_PREFIX) $(CC) $(firmware_flags) $(firmware_target_flags)
+$(firmware_dir)/flags: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$recorded" | cmp -s - $@ || printf '%s\n' "$$recorded" > $@
+
+# $(call firmware_rules,directory,compiler and its flags,type of ast_real)
+define firmware_rules
+$(firmware_dir)/$(1)/lib/%.o: src/%.c $(firmware_dir)/flags
+	@mkdir -p $$(@D)
+	$$(call say,CC)
+	$$(quiet)$(2) $$(firmware_flags) -DAST_REAL=$(3) -c -o $$@ $$<
+$(firmware_dir)/$(1)/example/%.o: examples/cortex-m7/%.c $(firmware_dir)/flags
+	@mkdir -p $$(@D)
+	$$(call say,CC)
+	$$(quiet)$(2) $$(firmware_flags) -DAST_REAL=$(3) -c -o $$@ $$<
+endef
+$(foreach v,$(firmware_variants),$(eval $(call firmware_rules,$(v),$(ARM_PREFIX)gcc $(firmware_target_flags) $($(v)_cpu),$($(v)_real))))
+$(foreach r,float double,$(eval $(call firmware_rules,host-$(r),$(CC) -O2 -D_DEFAULT_SOURCE,$(r))))
+
+# The same with faults of two minutes, at 30 frames a second.
+$(eval $(call firmware_rules,host-minutes,$(CC) -O2 -D_DEFAULT_SOURCE -DFRAMES_OF_FAULT=3600,float))
+
+firmware_objects = $(firmware_lib_sources:src/%.c=$(firmware_dir)/$(1)/lib/%.o) $(patsubst %,$(firmware_dir)/$(1)/example/%.o,$(2))
+
+# Only memcpy, memset, memcmp and what the compiler itself calls come from outside: newlib and libgcc.
+.SECONDEXPANSION:
+$(firmware_images): $(firmware_dir)/%/program.elf: $$(call firmware_objects,$$*,$(firmware_program) board_mps2) examples/cortex-m7/mps2.ld
+	$(call say,LINK)
+	$(quiet)$(ARM_PREFIX)gcc -mthumb -mfloat-abi=hard $($*_cpu) -nostartfiles -T examples/cortex-m7/mps2.ld -Wl,--gc-sections \
+	    -Wl,--fatal-warnings -o $@ $(filter %.o,$^)
+$(firmware_hosts): $(firmware_dir)/host-%/program: $$(call firmware_objects,host-$$*,$(firmware_program) board_host)
+	$(call say,LINK)
+	$(quiet)$(CC) -o $@ $^
+
+# Instructions, counted by the emulator; it has room for what a microcontroller's RAM has not.
+$(firmware_dir)/m7-single/instructions.elf: $(call firmware_objects,m7-single,instructions say small_scene board_mps2) examples/cortex-m7/mps2.ld
+	$(call say,LINK)
+	$(quiet)$(ARM_PREFIX)gcc -mthumb -mfloat-abi=hard $(m7-single_cpu) -nostartfiles -T examples/cortex-m7/mps2.ld -Wl,--gc-sections \
+	    -Wl,--fatal-warnings -Wl,--defsym=ram_size=4M -o $@ $(filter %.o,$^)
+.PHONY: instructions-firmware
+instructions-firmware: $(firmware_dir)/m7-single/instructions.elf ## instructions a frame on a Cortex-M7, counted by the emulator
+	@timeout 500 $(QEMU_ARM) -M mps2-an500 -icount shift=0 -nographic -monitor none -serial none \
+	    -semihosting-config enable=on,target=native -kernel $<
+
+test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emulator and compare with the host, bit for bit
+	@ARM_PREFIX=$(ARM_PREFIX) QEMU_ARM=$(QEMU_ARM) scripts/test_firmware.sh $(firmware_dir) \
+	    $(foreach v,$(firmware_variants),$(v):$($(v)_real):$($(v)_board))
+
+-include $(wildcard $(firmware_dir)/*/*/*.d)
+
+# ---- Budgets for a Cortex-M7 with a single-precision FPU, -Os ----
+
+# most RAM for the tiny preset's arena and stack, bytes
+FIRMWARE_RAM ?= 65536
+# most stack that a call into the library may take there, bytes
+FIRMWARE_STACK ?= 6144
+# most code and constants without save and restore and diagnostics, bytes
+FIRMWARE_CODE ?= 32768
+
+# What a program that tracks does not call: save and restore, looking inside, texts, the geometry alone, colour conversion.
+firmware_apart := state inspect error geometry
+firmware_lib_objects = $(call firmware_objects,m7-single,)
+
+.PHONY: size-firmware stack-firmware link-firmware test-cross test-cross-short
+size-firmware: $(firmware_lib_objects) $(firmware_dir)/host-float/program ## code and constants on a Cortex-M7; fails above FIRMWARE_CODE
+	@$(ARM_PREFIX)size $(firmware_lib_objects) | awk -v most=$(FIRMWARE_CODE) -v apart=' $(firmware_apart) ' 'NR > 1 { \
+	    name = $$6; sub(/.*\//, "", name); sub(/[.]o$$/, "", name); all += $$1; data += $$2 + $$3; \
+	    if (!index(apart, " " name " ")) core += $$1 } \
+	    END { printf "Cortex-M7, -Os: code and constants %d bytes, without save, restore and diagnostics %d (at most %d), data %d\n", \
+	    all, core, most, data; exit core > most || data > 0 }'
+
+stack-firmware: ## the same for the stack; fails above FIRMWARE_STACK
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/stack-m7 CC=$(ARM_PREFIX)gcc OBJDUMP=$(ARM_PREFIX)objdump BACKEND=builtin \
+	    LAPACKE=no JPEG=no CPPFLAGS='-DAST_REAL=float -DAST_NO_HEAP' STACK_CEILING=$(FIRMWARE_STACK) CFLAGS='-Os -mthumb \
+	    -mfloat-abi=hard $(m7-single_cpu) -ffunction-sections -fno-jump-tables -fcallgraph-info=su' stack-objects
+
+# The library on its own, without any C library: nothing but these may be missing.
+link-firmware: $(firmware_lib_objects) ## fails when the library needs more of a C library than memcpy, memset and memcmp
+	@missing=$$($(ARM_PREFIX)ld -r -o $(firmware_dir)/whole.o $(firmware_lib_objects) && $(ARM_PREFIX)nm -u $(firmware_dir)/whole.o | \
+	    awk '{ print $$2 }' | grep -v -x -E 'memcpy|memset|memcmp' | paste -s -d ' '); \
+	if [ -n "$$missing" ]; then echo "needed from outside: $$missing" >&2; exit 1; fi; echo "needs memcpy, memset and memcmp, nothing else"
+
+test-cross: ## the same bits on every processor, by gcc and clang, -O0 to -O3 (about 20 minutes)
+	@scripts/test_cross.sh $(BUILDDIR)/cross whole
+test-cross-short: ## the same by gcc, -O0 and -O3 (about 3 minutes)
+	@scripts/test_cross.sh $(BUILDDIR)/cross short

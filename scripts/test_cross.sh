@@ -1,0 +1,76 @@
+#!/bin/bash
+# The same bits on every processor, by every compiler, at every optimisation: builds tests/cross/bits.c with the library's sources for
+# each, runs it (other processors in qemu-user) and compares what it prints with the first build's, for ast_real double and float.
+# usage: test_cross.sh DIRECTORY short|whole
+set -u
+
+directory=${1:?usage: test_cross.sh DIRECTORY short|whole}
+extent=${2:?usage: test_cross.sh DIRECTORY short|whole}
+sources=(src/*.c)
+sources=("${sources[@]/src\/linalg_lapacke.c/}")
+flags=(-std=c99 -ffp-contract=off -fno-math-errno -Iinclude -Iexamples/cortex-m7 -static)
+passed=0 failed=0 skipped=0
+
+# name, emulator, gcc, clang's target
+targets=(
+    "x86-64||gcc|x86_64-linux-gnu"
+    "aarch64|qemu-aarch64|aarch64-linux-gnu-gcc|aarch64-linux-gnu"
+    "armhf|qemu-arm|arm-linux-gnueabihf-gcc|arm-linux-gnueabihf"
+    "riscv64|qemu-riscv64|riscv64-linux-gnu-gcc|riscv64-linux-gnu"
+    "s390x (big-endian)|qemu-s390x|s390x-linux-gnu-gcc|s390x-linux-gnu"
+    "powerpc (big-endian)|qemu-ppc|powerpc-linux-gnu-gcc|powerpc-linux-gnu"
+)
+# The short run leaves out what differs least: clang for the emulated targets, and two of the four optimisations.
+case $extent in
+short) compilers=(gcc) optimisations=(-O0 -O3) ;;
+whole) compilers=(gcc clang) optimisations=(-O0 -O1 -O2 -O3) ;;
+*) echo "usage: test_cross.sh DIRECTORY short|whole" >&2; exit 2 ;;
+esac
+
+# try TARGET EMULATOR COMPILER OPTIMISATION REAL COMMAND...
+try() {
+    local target=$1 emulator=$2 compiler=$3 optimisation=$4 real=$5 program=$directory/bits
+    shift 5
+    if ! "$@" "$optimisation" -DAST_REAL="$real" "${flags[@]}" -o "$program" ${sources[@]} tests/cross/bits.c \
+        examples/cortex-m7/small_scene.c -lm >"$directory/log" 2>&1; then
+        failed=$((failed + 1))
+        echo "  FAIL $target, $compiler $optimisation, $real: does not build: $(grep -m 1 error "$directory/log")"
+        return
+    fi
+    ${emulator:+"$emulator"} "$program" >"$directory/output" 2>&1
+    [ -e "$directory/expected-$real" ] || cp "$directory/output" "$directory/expected-$real"
+    if grep -q '^literal' "$directory/output" && cmp -s "$directory/output" "$directory/expected-$real"; then
+        passed=$((passed + 1))
+        echo "  ok   $target, $compiler $optimisation, $real"
+    else
+        failed=$((failed + 1))
+        echo "  FAIL $target, $compiler $optimisation, $real:"
+        diff "$directory/expected-$real" "$directory/output" | head -n 6
+    fi
+}
+
+mkdir -p "$directory"
+rm -f "$directory"/expected-*
+for row in "${targets[@]}"; do
+    IFS='|' read -r target emulator gcc clang_target <<<"$row"
+    if ! type "$gcc" ${emulator:+"$emulator"} >/dev/null 2>&1; then
+        echo "  skip $target: no $gcc or no $emulator"
+        skipped=$((skipped + 1))
+        continue
+    fi
+    for compiler in "${compilers[@]}"; do
+        for optimisation in "${optimisations[@]}"; do
+            # s390x evaluates float in double precision when told to follow C99 to the letter
+            if [ "$compiler" = gcc ]; then
+                command=("$gcc" -fexcess-precision=fast)
+            else
+                command=(clang --target="$clang_target")
+            fi
+            for real in double float; do
+                try "$target" "$emulator" "$compiler" "$optimisation" "$real" "${command[@]}"
+            done
+        done
+    done
+done
+echo "cross tests: $passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]
