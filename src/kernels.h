@@ -11,16 +11,20 @@
 #include "asttrack.h"
 #include "real.h"
 
+/* Vectors that are worked on side by side; the element l of each is in lane l. A processor without vectors gains nothing from many, and
+ * saves memory and stack with few (4, 8 or 16); the number changes no bit of a result. */
+#ifndef AST_LANES
+#define AST_LANES 16
+#endif
+
 /* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
  * AST_ONE_KERNEL to leave them out. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(AST_ONE_KERNEL)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(AST_ONE_KERNEL) && AST_LANES == 16
 #define AST_X86_KERNELS 1
 #else
 #define AST_X86_KERNELS 0
 #endif
 
-/* Vectors that are worked on side by side; the element l of each is in lane l. */
-enum { AST_LANES = 16 };
 /* Elements of a panel at most. Summing so many at a time keeps the rounding error well below that of one long sum. */
 enum { AST_PANEL_DEPTH = 64 };
 

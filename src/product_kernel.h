@@ -3,7 +3,7 @@
 
 #include "kernel_vectors.h"
 
-enum { VECTORS = AST_PANEL_VECTORS, COLUMNS = AST_PANEL_COLUMNS };
+enum { VECTORS = AST_PANEL_VECTORS * WIDTH <= AST_LANES ? AST_PANEL_VECTORS : AST_LANES / WIDTH, COLUMNS = AST_PANEL_COLUMNS };
 
 static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
     int d = 0;

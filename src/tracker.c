@@ -50,7 +50,8 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     ast_view_layout(&t->view, cfg, arena);
     ast_features_layout(&t->features, cfg, arena);
     t->scoring->layout(&t->scoring_scratch, cfg, la, t->dim, arena);
-    t->tile = ast_arena_take(arena, stride * AST_TILE, sizeof *t->tile);
+    const size_t given = (size_t)cfg->history + 1; /* a start keeps the patches there, and the background's mean behind them */
+    t->tile = ast_arena_take(arena, stride * (AST_TILE > given ? AST_TILE : given), sizeof *t->tile);
     t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
     t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
     t->basis = ast_arena_take(arena, stride * (size_t)cfg->basis_size, sizeof *t->basis);

@@ -44,7 +44,7 @@ struct ast_tracker {
     struct ast_view view;
     struct ast_features features;
     union ast_scratch scoring_scratch;
-    float *tile;     /* AST_TILE vectors */
+    float *tile;     /* AST_TILE vectors, or history + 1 where that is more */
     float *distance; /* particles x models of the last step */
     int models;      /* columns of distance; 0 before the first step */
     float *mean;     /* of a set being fitted: dim */

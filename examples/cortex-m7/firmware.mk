@@ -20,7 +20,7 @@ m4-single_board := mps2-an386
 firmware_dir := $(BUILDDIR)/firmware
 firmware_lib_sources := $(core_sources) src/linalg_builtin.c
 firmware_flags = -std=c99 -ffp-contract=off -fno-math-errno $(filter-out -Werror,$(warnings)) -Werror -Wdouble-promotion -Iinclude \
-	-MMD -MP -DAST_NO_HEAP
+	-MMD -MP -DAST_NO_HEAP -DAST_LANES=4
 firmware_target_flags = -Os -g -mthumb -mfloat-abi=hard -ffunction-sections -fdata-sections
 firmware_program := program say camera small_scene
 firmware_images := $(firmware_variants:%=$(firmware_dir)/%/program.elf)
@@ -82,10 +82,8 @@ test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emu
 
 # ---- Budgets for a Cortex-M7 with a single-precision FPU, -Os ----
 
-# most RAM for the tiny preset's arena and stack, bytes
-FIRMWARE_RAM ?= 65536
 # most stack that a call into the library may take there, bytes
-FIRMWARE_STACK ?= 6144
+FIRMWARE_STACK ?= 4096
 # most code and constants without save and restore and diagnostics, bytes
 FIRMWARE_CODE ?= 32768
 
@@ -103,7 +101,7 @@ size-firmware: $(firmware_lib_objects) $(firmware_dir)/host-float/program ## cod
 
 stack-firmware: ## the same for the stack; fails above FIRMWARE_STACK
 	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/stack-m7 CC=$(ARM_PREFIX)gcc OBJDUMP=$(ARM_PREFIX)objdump BACKEND=builtin \
-	    LAPACKE=no JPEG=no CPPFLAGS='-DAST_REAL=float -DAST_NO_HEAP' STACK_CEILING=$(FIRMWARE_STACK) CFLAGS='-Os -mthumb \
+	    LAPACKE=no JPEG=no CPPFLAGS='-DAST_REAL=float -DAST_NO_HEAP -DAST_LANES=4' STACK_CEILING=$(FIRMWARE_STACK) CFLAGS='-Os -mthumb \
 	    -mfloat-abi=hard $(m7-single_cpu) -ffunction-sections -fno-jump-tables -fcallgraph-info=su' stack-objects
 
 # The library on its own, without any C library: nothing but these may be missing.

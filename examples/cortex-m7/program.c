@@ -16,10 +16,10 @@
 enum {
     FRAMES_BEFORE_RESET = 40,
     FRAMES_AFTER_RESET = 20,
-    FRAMES_TO_RECOVER = 60, /* at most */
-    STUCK_AFTER = 3,        /* equal pictures in a row: a real sensor's noise never repeats */
-    ARENA = 96 * 1024,      /* bytes */
-    FAR = 10                /* pixels between the centres of box and truth beyond which the object is not followed */
+    FRAMES_TO_RECOVER = 60,                                       /* at most */
+    STUCK_AFTER = 3,                                              /* equal pictures in a row: a real sensor's noise never repeats */
+    ARENA = (sizeof(AST_REAL) == sizeof(float) ? 60 : 72) * 1024, /* bytes: in single precision it and 4 KiB of stack make 64 KiB */
+    FAR = 10 /* pixels between the centres of box and truth beyond which the object is not followed */
 };
 
 static unsigned char arena[ARENA];
