@@ -328,7 +328,8 @@ AST_API size_t ast_subspace_work_size(int32_t dim, int32_t count);
 /* Fits an affine subspace to count images (paper section 2.2). images: dim x count, column-major, stride floats a column. mean
  * (dim floats) and basis (dim x n, column-major, packed) are the caller's; out then points into them. A direction whose singular
  * value is at most 1e-5 of the images' Frobenius norm is absent: a zero column. basis_kind: AST_BASIS_*; 1 <= n <= AST_MAX_BASIS.
- * work: any address, ast_subspace_work_size(dim, count) bytes. AST_E_NULL, AST_E_RANGE, AST_E_BUFFER, AST_E_BACKEND. */
+ * work: any address, ast_subspace_work_size(dim, count) bytes. AST_E_NULL, AST_E_RANGE (values that are not finite, too), AST_E_BUFFER,
+ * AST_E_BACKEND. */
 AST_API AST_CHECKED int ast_subspace_fit(const float *images, int32_t dim, int32_t stride, int32_t count, int basis_kind, int32_t n,
                                          float *mean, float *basis, ast_subspace *out, void *work, size_t work_size);
 
@@ -339,7 +340,7 @@ typedef struct ast_distance {
     float distance;             /* geodesic + alpha mahalanobis (eq. 2) */
 } ast_distance;
 /* Distance of two subspaces of the same dim and n. Where a and b have absent directions (of n), min(a, b) angles are 0 and the
- * remaining absent ones pi/2. work as above, ast_subspace_work_size(dim, n). AST_E_NULL, AST_E_RANGE, AST_E_BUFFER, AST_E_BACKEND. */
+ * remaining absent ones pi/2. work as above, ast_subspace_work_size(dim, n). Errors as above. */
 AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_subspace *b, float alpha, ast_distance *out,
                                               void *work, size_t work_size);
 

@@ -14,6 +14,16 @@ static size_t work_elements(int32_t dim, int32_t count) {
     return fit > distance ? fit : distance;
 }
 
+/* LAPACK's decomposition may never return from a NaN. */
+static int is_finite(const float *columns, int32_t dim, int32_t stride, int32_t count) {
+    for (int32_t j = 0; j < count; j++) {
+        const float *column = columns + (size_t)j * (size_t)stride;
+        for (int32_t d = 0; d < dim; d++)
+            if (!(column[d] - column[d] == 0.0f)) return 0;
+    }
+    return 1;
+}
+
 size_t ast_subspace_work_size(int32_t dim, int32_t count) {
     if (dim < 1 || count < 1 || count > AST_MAX_HISTORY + 1) return 0;
     return work_elements(dim, count) * sizeof(ast_real) + AST_ALIGNMENT - 1;
@@ -25,6 +35,7 @@ int ast_subspace_fit(const float *images, int32_t dim, int32_t stride, int32_t c
     if (dim < 1 || stride < dim || count < 1 || count > AST_MAX_HISTORY + 1 || n < 1 || n > AST_MAX_BASIS) return AST_E_RANGE;
     if (basis_kind != AST_BASIS_CENTRED && basis_kind != AST_BASIS_RAW) return AST_E_RANGE;
     if (work_size < ast_subspace_work_size(dim, count)) return AST_E_BUFFER;
+    if (!is_finite(images, dim, stride, count)) return AST_E_RANGE;
 
     const float *column[AST_MAX_HISTORY + 1];
     const struct ast_images set = {column, count, dim};
@@ -43,7 +54,8 @@ int ast_subspace_fit(const float *images, int32_t dim, int32_t stride, int32_t c
 }
 
 static int subspace_is_legal(const ast_subspace *s) {
-    return s->dim >= 1 && s->stride >= s->dim && s->n >= 1 && s->n <= AST_MAX_BASIS && s->rank >= 0 && s->rank <= s->n;
+    return s->dim >= 1 && s->stride >= s->dim && s->n >= 1 && s->n <= AST_MAX_BASIS && s->rank >= 0 && s->rank <= s->n &&
+           is_finite(s->mean, s->dim, s->dim, 1) && is_finite(s->basis, s->dim, s->stride, s->rank);
 }
 
 /* The present basis vectors in ast_real, packed. */

@@ -655,6 +655,31 @@ static void test_distance_names_its_errors(void) {
     }
 }
 
+/* LAPACK's decomposition of a NaN may not end. */
+static void test_values_that_are_not_finite_are_refused(void) {
+    static struct fitted a;
+    static const float bad[] = {NAN, INFINITY, -INFINITY};
+    struct noise noise = {15};
+    float images[8 * 3], kept;
+    double work[400];
+    ast_distance out;
+    const size_t size = ast_subspace_work_size(8, 3);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(sizeof work, size);
+    noise_fill(&noise, images, 8 * 3, 0, 1);
+    for (int i = 0; i < 9; i++) {
+        fit(&a, images, 8, 8, 3, AST_BASIS_CENTRED, 2);
+        float *at = i / 3 == 0 ? &images[8 * 3 - 1] : i / 3 == 1 ? &a.mean[7] : &a.basis[8];
+        kept = *at;
+        *at = bad[i % 3];
+        if (i / 3 == 0)
+            TEST_ASSERT_EQUAL_INT(AST_E_RANGE, ast_subspace_fit(images, 8, 8, 3, AST_BASIS_CENTRED, 2, a.mean, a.basis, &a.subspace,
+                                                                work, sizeof work));
+        else
+            TEST_ASSERT_EQUAL_INT(AST_E_RANGE, ast_subspace_distance(&a.subspace, &a.subspace, 1.0f, &out, work, sizeof work));
+        *at = kept;
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_golden_cases_of_our_own);
@@ -679,5 +704,6 @@ int main(void) {
     RUN_TEST(test_the_workspace_has_the_size_it_says);
     RUN_TEST(test_fit_names_its_errors);
     RUN_TEST(test_distance_names_its_errors);
+    RUN_TEST(test_values_that_are_not_finite_are_refused);
     return UNITY_END();
 }
