@@ -21,7 +21,7 @@ void ast_background_average(struct ast_background *b) {
         for (int z = 0; z < b->size; z++) sum += (ast_real)b->set[(size_t)z * (size_t)b->stride + (size_t)d];
         b->mean[d] = (float)(sum / (ast_real)b->size);
     }
-    memset(b->changed, 1, (size_t)(1 + b->size));
+    memset(b->changed, 1, 1 + (size_t)b->size);
 }
 
 void ast_background_replace(struct ast_background *b, int slot, const float *vector) {

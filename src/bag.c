@@ -5,7 +5,7 @@
 #include "vector.h"
 
 static size_t capacity_columns(const struct ast_bag *bag) {
-    return (size_t)(bag->lead + bag->capacity * (bag->n + 1));
+    return (size_t)bag->lead + (size_t)bag->capacity * ((size_t)bag->n + 1);
 }
 
 void ast_bag_layout(struct ast_bag *bag, int dim, int stride, int lead, int n, int capacity, int keep_first,
@@ -65,7 +65,7 @@ void ast_bag_add(struct ast_bag *bag, const float *mean, const float *basis, int
 
 void ast_bag_derive(struct ast_bag *bag, int slot) {
     const float *mean = ast_bag_mean(bag, slot), *basis = ast_bag_basis(bag, slot);
-    memset(bag->changed + bag->lead + slot * (bag->n + 1), 1, (size_t)(bag->n + 1));
+    memset(bag->changed + bag->lead + slot * (bag->n + 1), 1, (size_t)bag->n + 1);
     for (int l = 0; l < bag->n; l++)
         bag->basis_mean[slot * bag->n + l] = ast_dot(basis + (size_t)l * (size_t)bag->stride, mean, bag->dim);
 }

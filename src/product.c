@@ -44,8 +44,10 @@ static int panels_cost(int in_lanes, int others) {
 
 /* Either operand may be in the lanes: the products commute, and the order of each sum is the same. */
 void ast_product(int rows, int cols, int depth, const float *a, int lda, const float *b, int ldb, float *c, int ldc) {
-    if (panels_cost(rows, cols) <= panels_cost(cols, rows))
+    if (panels_cost(rows, cols) <= panels_cost(cols, rows)) {
         lanes_product(rows, cols, depth, a, (size_t)lda, b, (size_t)ldb, c, 1, (size_t)ldc);
-    else
+    } else {
+        /* NOLINTNEXTLINE(readability-suspicious-call-argument): swapped on purpose */
         lanes_product(cols, rows, depth, b, (size_t)ldb, a, (size_t)lda, c, (size_t)ldc, 1);
+    }
 }
