@@ -9,6 +9,10 @@
 #define USUAL_RATE 0.05f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
+/* But an object whose likeness to the start is usually at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
+ * what is known, something is in front of it, however sure the cloud is about that. */
+#define FAITHFUL 0.5f
+#define VANISHED 0.35f
 /* Growth of the search a frame. */
 #define SEARCH_GROWTH 1.3f
 /* Frames over which it may grow: 1.3^40 covers any frame from a walk of a pixel. */
@@ -53,8 +57,10 @@ struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config 
     struct ast_guard next = *guard;
     const struct ast_resemblance usual = guard->usual.start > 0.0f ? guard->usual : *resemblance;
     const int unknown = resemblance->known < cfg->recall * usual.known;
-    const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * usual.start
-                                     : unknown && resemblance->start < cfg->guard * usual.start && spread > DECIDED_SPREAD;
+    const int vanished = usual.start > FAITHFUL && resemblance->known < VANISHED * usual.known;
+    const int doubtful = guard->lost
+                             ? unknown || resemblance->start < cfg->reacquire * usual.start
+                             : unknown && resemblance->start < cfg->guard * usual.start && (spread > DECIDED_SPREAD || vanished);
     if (cfg->guard > 0.0f && doubtful) {
         if (next.low < AST_GUARD_LONG) next.low++;
         next.lost = guard->lost || next.low >= cfg->lost_after;

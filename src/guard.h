@@ -34,7 +34,8 @@ float ast_guard_likeness(const float *vector, const float *other, const float *o
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
 /* The guard after a frame whose winner resembles so and whose cloud has this spread (in object sizes). A frame is not trusted when its
- * likeness to the start falls below cfg->guard and that to what is known below cfg->recall of the usual, while the cloud is undecided;
+ * likeness to the start falls below cfg->guard and that to what is known below cfg->recall of the usual, while the cloud is undecided or
+ * nothing like the object is left;
  * lost_after such frames make the object lost, until likenesses of cfg->reacquire and cfg->recall of the usual. With cfg->guard == 0
  * every frame is trusted. */
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,

@@ -105,7 +105,14 @@ static void test_only_a_frame_unlike_all_that_is_known_is_refused(void) {
     see(0.75f, 0.3f, 0.3f); /* it has come back to its looks at the start */
     TEST_ASSERT_EQUAL_INT(0, guard.low);
     guard = before;
-    see(0.2f, 0.3f, 0.05f); /* it changes, and the cloud is sure about it */
+    see(0.2f, 0.4f, 0.05f); /* it changes, and the cloud is sure about it */
+    TEST_ASSERT_EQUAL_INT(0, guard.low);
+    guard = before;
+    see(0.2f, 0.3f, 0.05f); /* nothing of it is left: however sure the cloud is, that is something else */
+    TEST_ASSERT_EQUAL_INT(1, guard.low);
+    guard = before;
+    guard.usual.start = 0.4f; /* unless its looks have long been other ones than at the start */
+    see(0.1f, 0.3f, 0.05f);
     TEST_ASSERT_EQUAL_INT(0, guard.low);
     guard = before;
     see(0.2f, 0.3f, 0.3f);
