@@ -162,10 +162,11 @@ static const ast_config robust = {
 int ast_config_preset(ast_config *cfg, int preset) {
     if (cfg == NULL) return AST_E_NULL;
     switch (preset) {
-    case AST_PRESET_PAPER: *cfg = paper; return AST_OK;
-    case AST_PRESET_ROBUST: *cfg = robust; return AST_OK;
+    /* Copied byte for byte: an assignment may leave the padding as it was. */
+    case AST_PRESET_PAPER: memcpy(cfg, &paper, sizeof *cfg); return AST_OK;
+    case AST_PRESET_ROBUST: memcpy(cfg, &robust, sizeof *cfg); return AST_OK;
     case AST_PRESET_TINY:
-        *cfg = paper;
+        memcpy(cfg, &paper, sizeof *cfg);
         cfg->particles = 100;
         cfg->patch_width = 16;
         cfg->patch_height = 16;

@@ -25,7 +25,7 @@ static void cloud_layout(struct ast_cloud *cloud, int count, struct ast_arena *a
 static void layout(struct ast_tracker *t, const ast_config *cfg, const struct ast_linalg *la, struct ast_arena *arena) {
     enum { FLOATS = AST_ALIGNMENT / sizeof(float) };
     memset(t, 0, sizeof *t);
-    t->cfg = *cfg;
+    memcpy(&t->cfg, cfg, sizeof t->cfg); /* with its padding */
     t->la = la;
     t->kernels = ast_kernels();
     t->scoring = ast_scoring_of(cfg);
