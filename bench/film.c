@@ -32,7 +32,7 @@ static bool keep(struct film *f, const image *grey, int32_t index, int32_t frame
 }
 
 bool film_render(struct film *f, int32_t frames) {
-    const scene_options options = {320, 240, 200, 3, 0, 0, 1}; /* what `asttrack synth` renders unless told otherwise */
+    const scene_options options = {320, 240, 200, 3, 0, 0, false, 1}; /* what `asttrack synth` renders unless told otherwise */
     image grey;
     memset(f, 0, sizeof *f);
     memset(&grey, 0, sizeof grey);

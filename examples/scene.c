@@ -425,7 +425,7 @@ bool scene_render(const scene *s, int32_t frame, image *grey, ast_box *box, scen
         *presence = SCENE_AWAY;
     } else {
         draw_ground(&f, s, s->ground, t);
-        draw_target(&f, s, s->other.x + s->other.speed * t, s->other.y, s->other.scale, SEED_LOOKALIKE);
+        if (!s->options.alone) draw_target(&f, s, s->other.x + s->other.speed * t, s->other.y, s->other.scale, SEED_LOOKALIKE);
         draw_target(&f, s, x, y, scale, SEED_TARGET);
         draw_board(&f, s, &s->partial, t, SEED_PARTIAL_BOARD);
         draw_board(&f, s, &s->full, t, SEED_FULL_BOARD);

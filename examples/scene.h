@@ -1,6 +1,6 @@
 /* A rendered sequence with known truth: one textured target before a textured, slowly panning background. It drifts and darts,
  * grows and shrinks, is hidden by two boards that pass (one in part, one fully), goes through a change of light and meets a
- * look-alike; the camera has noise. Every frame is a pure function of the options, so frames can be rendered in any order. */
+ * look-alike (unless it is alone); the camera has noise. Every frame is a pure function of the options, so frames can be rendered in any order. */
 #ifndef SCENE_H
 #define SCENE_H
 
@@ -16,6 +16,7 @@ typedef struct scene_options {
     int32_t occlusion;     /* frames of full occlusion, in the middle */
     int32_t leave;         /* frames wholly out of view */
     int32_t cut;           /* frames of another scene */
+    bool alone;            /* without the look-alike */
     uint64_t seed;
 } scene_options;
 

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_FRAMES, OPTION_SIZE, OPTION_SEED, OPTION_OCCLUSION, OPTION_LEAVE, OPTION_CUT };
+enum { OPTION_FRAMES, OPTION_SIZE, OPTION_SEED, OPTION_OCCLUSION, OPTION_LEAVE, OPTION_CUT, OPTION_ALONE };
 
 static const option table[] = {
     {"--frames", "N", false, OPTION_FRAMES, "frames to render, 200 by default"},
@@ -22,6 +22,7 @@ static const option table[] = {
     {"--occlusion", "FRAMES", false, OPTION_OCCLUSION, "how long the target is fully hidden, 3 by default (truth goes on)"},
     {"--leave", "FRAMES", false, OPTION_LEAVE, "how long the target is out of view, 0 by default (truth nan)"},
     {"--cut", "FRAMES", false, OPTION_CUT, "how long another scene is shown, 0 by default (truth nan)"},
+    {"--alone", NULL, false, OPTION_ALONE, "without the look-alike"},
     {NULL, NULL, false, 0, NULL},
 };
 
@@ -50,6 +51,7 @@ static bool take(arguments *a, int id, const char *value) {
     case OPTION_SEED: return option_seed("--seed", value, &o->seed);
     case OPTION_OCCLUSION: return option_integer("--occlusion", value, 0, SCENE_MAX_FRAMES, &o->occlusion);
     case OPTION_LEAVE: return option_integer("--leave", value, 0, SCENE_MAX_FRAMES, &o->leave);
+    case OPTION_ALONE: o->alone = true; return true;
     case OPTION_CUT: return option_integer("--cut", value, 0, SCENE_MAX_FRAMES, &o->cut);
     default: break; /* OPTION_POSITIONAL */
     }
@@ -186,7 +188,7 @@ static bool synthesise(const scene_options *o, const char *directory) {
 }
 
 int command_synth(int argc, char **argv) {
-    arguments a = {{320, 240, 200, 3, 0, 0, 1}, false, NULL};
+    arguments a = {{320, 240, 200, 3, 0, 0, false, 1}, false, NULL};
     const int end = read_arguments(&a, argc, argv);
     if (end == OPTION_HELP) {
         print_help();

@@ -162,6 +162,22 @@ static void test_synth_labels_absence(void) {
     }
 }
 
+/* Alone, the scene is the same up to where the look-alike comes into view, and not behind. */
+static void test_synth_leaves_out_the_look_alike(void) {
+    static char with[TEXT_SIZE], without[TEXT_SIZE];
+    run_well("synth @met --frames 200 --size 96x72");
+    run_well("synth @alone --frames 200 --size 96x72 --alone");
+    size_t size = read_file(at("@met/img/00010.pgm"), with, sizeof with);
+    TEST_ASSERT_EQUAL_UINT(size, read_file(at("@alone/img/00010.pgm"), without, sizeof without));
+    TEST_ASSERT_EQUAL_MEMORY(with, without, size);
+    size = read_file(at("@met/img/00150.pgm"), with, sizeof with);
+    TEST_ASSERT_EQUAL_UINT(size, read_file(at("@alone/img/00150.pgm"), without, sizeof without));
+    TEST_ASSERT_TRUE(memcmp(with, without, size) != 0);
+    size = read_file(at("@met/groundtruth.txt"), with, sizeof with);
+    TEST_ASSERT_EQUAL_UINT(size, read_file(at("@alone/groundtruth.txt"), without, sizeof without));
+    TEST_ASSERT_EQUAL_MEMORY(with, without, size);
+}
+
 static void test_synth_repeats_itself(void) {
     static char first[TEXT_SIZE], again[TEXT_SIZE], other[TEXT_SIZE];
     run_well("synth @again --frames 12 --size 96x72");
@@ -508,6 +524,7 @@ int main(int argc, char **argv) {
     RUN_TEST(make_inputs);
     RUN_TEST(test_synth_makes_a_sequence);
     RUN_TEST(test_synth_labels_absence);
+    RUN_TEST(test_synth_leaves_out_the_look_alike);
     RUN_TEST(test_synth_repeats_itself);
     RUN_TEST(test_presets_track_the_scene);
     RUN_TEST(test_paper_preset_tracks_girl_and_occluded_face2);

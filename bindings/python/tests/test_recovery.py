@@ -25,6 +25,7 @@ from asttrack.evaluation.recovery import (
     half_inside,
     parse_events,
     recover,
+    render,
     summaries,
 )
 from asttrack.evaluation.results import measure
@@ -136,8 +137,10 @@ def test_a_summary_counts_every_scene() -> None:
 
 def test_events_are_read() -> None:
     assert parse_events("occlusion:50, leave:2,cut:7") == [Event("occlusion", 50), Event("leave", 2), Event("cut", 7)]
-    for text in ("occlusion", "fog:5", "leave:0", "leave:-1", "cut:x", ""):
-        with pytest.raises(UsageError, match=f"{text}: not an event: occlusion:FRAMES, leave:FRAMES, cut:FRAMES"):
+    (met,) = parse_events("occlusion:50:look-alike")
+    assert (met, met.name) == (Event("occlusion", 50, met=True), "occlusion:50:look-alike")
+    for text in ("occlusion", "fog:5", "leave:0", "leave:-1", "cut:x", "cut:5:", "cut:5:twin", ""):
+        with pytest.raises(UsageError, match=f"{text}: not an event: occlusion:FRAMES, leave:FRAMES, cut:FRAMES, "):
             parse_events(text)
     with pytest.raises(UsageError, match="an event is given twice"):
         parse_events("cut:5,cut:5")
@@ -168,6 +171,17 @@ def test_the_command_renders_counts_and_writes(tmp_path: Path) -> None:
     # A tracker that does not lose an object in five frames of the scene's start is on it before.
     assert lines[0]["held"] == "1"
     assert (tmp_path / "recovery.md").read_text().count("| asttrack |") == 3
+
+
+def test_only_scenes_that_ask_for_it_have_a_look_alike(tmp_path: Path) -> None:
+    asked = tmp_path / "asked"
+    script = tmp_path / "recorder"
+    script.write_text(f'#!/bin/sh\necho "$*" >>{asked}\nexit 1\n')
+    script.chmod(0o755)
+    for event in (EVENT, Event("cut", 5, met=True)):
+        with pytest.raises(DataError):
+            render(script, tmp_path, event, 1)
+    assert ["--alone" in line.split() for line in asked.read_text().splitlines()] == [True, False]
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from asttrack.evaluation.recovery import Recovery
 
 INTERRUPTED = 130
-EVENTS = "occlusion:5,occlusion:10,occlusion:20,occlusion:50,occlusion:100,leave:10,leave:50,cut:5,cut:50"
+EVENTS = "occlusion:5,occlusion:10,occlusion:20,occlusion:50,occlusion:100,leave:10,leave:50,cut:5,cut:50,occlusion:50:look-alike"
 
 
 def add(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -25,6 +25,8 @@ from asttrack.evaluation.trackers import TrackerSpec
 from asttrack.failures import DataError, UsageError
 
 KINDS = ("occlusion", "leave", "cut")
+LOOK_ALIKE = "look-alike"
+"""Behind an event: a twin of the object crosses the scene, too, and may be there first."""
 WITHIN = 15
 """Frames in which the object should be found, the first one in which it is back included."""
 ON_IT = 0.5
@@ -46,25 +48,29 @@ class Event:
     Attributes:
         kind: one of KINDS.
         frames: how long nothing of the object is in view.
+        met: whether the object's look-alike crosses the scene afterwards, at the place where a tracker may search.
     """
 
     kind: str
     frames: int
+    met: bool = False
 
     @property
     def name(self) -> str:
         """In tables, and how it is given."""
-        return f"{self.kind}:{self.frames}"
+        return f"{self.kind}:{self.frames}" + (f":{LOOK_ALIKE}" if self.met else "")
 
 
 def parse_events(text: str) -> list[Event]:
     """The events of a list `occlusion:50,leave:20`. Raises UsageError."""
     events = []
     for word in text.split(","):
-        kind, _, frames = word.strip().partition(":")
-        if kind not in KINDS or not frames.isdecimal() or int(frames) < 1:
-            raise UsageError(f"{word.strip()}: not an event: {', '.join(f'{kind}:FRAMES' for kind in KINDS)}")
-        events.append(Event(kind, int(frames)))
+        kind, _, rest = word.strip().partition(":")
+        frames, _, company = rest.partition(":")
+        if kind not in KINDS or not frames.isdecimal() or int(frames) < 1 or (":" in rest and company != LOOK_ALIKE):
+            known = ", ".join(f"{kind}:FRAMES" for kind in KINDS)
+            raise UsageError(f"{word.strip()}: not an event: {known}, with :{LOOK_ALIKE} behind it or not")
+        events.append(Event(kind, int(frames), company == LOOK_ALIKE))
     if len(set(events)) < len(events):
         raise UsageError(f"{text}: an event is given twice")
     return events
@@ -152,7 +158,7 @@ def render(command: Path, directory: Path, event: Event, scene: int) -> Sequence
     options = {"frames": _SCRIPT + event.frames, "seed": scene, "size": f"{_WIDTH}x{_HEIGHT}", "occlusion": 0}
     options[event.kind] = event.frames
     words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
-    whole: list[str | Path] = [command, "synth", directory, *words]
+    whole: list[str | Path] = [command, "synth", directory, *words, *([] if event.met else ["--alone"])]
     done = subprocess.run(whole, capture_output=True, text=True, check=False)  # noqa: S603  # what the user named
     if done.returncode != 0:
         raise DataError(done.stderr.strip() or f"{command}: ended with status {done.returncode}")

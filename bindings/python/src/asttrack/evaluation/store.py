@@ -38,7 +38,7 @@ ABLATION_COLUMNS = (
     "variant",
     *(f"{figure.key}{end}" for figure in ABLATED for end in ("", "_low", "_high", "_change", "_change_low", "_change_high")),
 )
-RECOVERY_COLUMNS = ("event", "frames", "scene", "tracker", "held", "noticed", "took", "recovered")
+RECOVERY_COLUMNS = ("event", "frames", "look_alike", "scene", "tracker", "held", "noticed", "took", "recovered")
 TRACK_COLUMNS = ("sequence", "tracker", "start", "seed", "frame", "x", "y", "w", "h", "ok", "score", "centre_error", "overlap")
 
 
@@ -145,7 +145,7 @@ def markdown_text(told: Conditions, notes: list[str], tables: list[tuple[str, Li
 
 def recovery_line(one: Recovery) -> list[object]:
     """A run through a scene, as RECOVERY_COLUMNS."""
-    return [one.event.kind, one.event.frames, one.scene, one.tracker, int(one.held), int(one.noticed), one.took, int(one.recovered)]
+    return [one.event.kind, one.event.frames, int(one.event.met), one.scene, one.tracker, int(one.held), int(one.noticed), one.took, int(one.recovered)]
 
 
 def as_json(evaluation: Evaluation, compare: bool) -> dict[str, Any]:
