@@ -394,7 +394,7 @@ def test_bench_shows_and_keeps_earlier_figures(tmp_path: Path) -> None:
 def test_bench_refuses_what_are_no_figures(tmp_path: Path) -> None:
     path = tmp_path / "figures.json"
     path.write_text("{}")
-    assert "not figures that `bench --out` wrote" in complaint(command("bench", "--read", path), 1)
+    assert "not the figures of `bench --out`" in complaint(command("bench", "--read", path), 1)
     assert "not the figures of `make bench`" in complaint(command("bench", "--core", path), 1)
     assert "--only-trackers" in complaint(command("bench", "--only-trackers", "--trackers", ""), 2)
 
