@@ -466,8 +466,8 @@ analyse: ## static analysis by gcc -fanalyzer and cppcheck
 # A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
 # valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long.
 memcheck: unity ## the C tests under valgrind, with the builtin backend
-	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' \
-	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite' test-c
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' CPPFLAGS='$(CPPFLAGS) -DAST_TEST_VALGRIND' \
+	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite' test-c
 
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)

@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-#include "support_sanitizer.h"
+#include "support_watched.h"
 
 static long allocation_count; /* changed by any thread */
 
