@@ -100,7 +100,7 @@ test_sources := $(wildcard tests/test_*.c)
 test_support_sources := $(filter-out $(test_sources),$(wildcard tests/*.c))
 bench_sources := $(wildcard bench/*.c)
 fuzz_sources := $(wildcard tests/fuzz/fuzz_*.c)
-c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] examples/*/*.[ch] tests/*.[ch] tests/cross/*.c bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c)
+c_files := $(wildcard include/*.h src/*.[ch] examples/*.[ch] examples/*/*.[ch] tests/*.[ch] tests/cross/*.c bench/*.[ch] tests/fuzz/*.[ch] tests/fault/*.c tests/soak/*.c calibration/*.c)
 
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(if $(filter 1,$(WERROR)),-Werror)
 sanitizers := $(if $(SANITIZE),-g -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -253,19 +253,29 @@ $(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(
 # ---- Tests ----
 
 .PHONY: test test-c test-programs test-python lint-python unity sanitize asan ubsan tsan test-32
-test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary \
-	$(if $(wildcard bindings/python/pyproject.toml),$(BUILDDIR)/python/summary)
+test_backends := builtin $(if $(filter yes,$(LAPACKE)),lapacke)
+python_package := $(wildcard bindings/python/pyproject.toml)
+test_runs := $(test_backends:%=test-run-%) $(if $(python_package),test-run-python)
+test_summaries := $(BUILDDIR)/builtin/tests/summary $(BUILDDIR)/lapacke/tests/summary $(if $(python_package),$(BUILDDIR)/$(BACKEND)/python/summary)
+test_failed := $(BUILDDIR)/tests/failed
 comma := ,
 lapacke_skipped := C tests with lapacke: 0 passed, 0 failed, 1 skipped (no libopenblas-dev and liblapacke-dev)
 
-# One C run for each backend that the machine can build, each in a build directory of its own; a failing run does not stop the next.
-test: unity ## all tests: C with each backend, then Python
-	@rm -f $(test_summaries) && mkdir -p $(dir $(test_summaries))
-	+@$(again) BUILDDIR=$(BUILDDIR)/builtin BACKEND=builtin test-c; builtin=$$?; \
-	$(if $(filter yes,$(LAPACKE)),$(again) BUILDDIR=$(BUILDDIR)/lapacke BACKEND=lapacke test-c,echo "$(lapacke_skipped)" > \
-	    $(BUILDDIR)/lapacke/tests/summary); lapacke=$$?; \
-	$(if $(wildcard bindings/python/pyproject.toml),$(again) test-python,true); python=$$?; \
-	scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); exit $$((builtin || lapacke || python))
+# One C run for each backend that the machine can build, each in a build directory of its own, and the Python tests with one of them; a
+# failing run does not stop the others, which -j runs at the same time.
+.PHONY: test-start test-ready $(test_runs) $(test_backends:%=test-build-%)
+test: $(test_runs) ## all tests: C with each backend, then Python
+	@scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); [ ! -e $(test_failed) ]
+test-start: unity
+	@rm -f $(test_summaries) $(test_failed) && mkdir -p $(dir $(test_summaries) $(test_failed))
+	@$(if $(filter no,$(LAPACKE)),echo "$(lapacke_skipped)" > $(BUILDDIR)/lapacke/tests/summary)
+$(test_backends:%=test-build-%): test-build-%: test-start
+	+@$(again) BUILDDIR=$(BUILDDIR)/$* BACKEND=$* test-ready || touch $(test_failed)
+test-ready: $(chosen_programs) $(BUILDDIR)/asttrack lib-shared
+$(test_backends:%=test-run-%): test-run-%: test-build-%
+	+@$(again) BUILDDIR=$(BUILDDIR)/$* BACKEND=$* test-c || touch $(test_failed)
+test-run-python: test-build-$(BACKEND)
+	+@$(again) BUILDDIR=$(BUILDDIR)/$(BACKEND) BACKEND=$(BACKEND) test-python || touch $(test_failed)
 
 test-c: $(chosen_programs) $(BUILDDIR)/asttrack ## the C tests, with the library as it is configured
 	@scripts/run_tests.sh $(BUILDDIR)/tests/summary "C tests with $(BACKEND)$(if $(SANITIZE), under $(SANITIZE))" $(chosen_programs)
@@ -330,8 +340,8 @@ test-python: .venv/installed $(BUILDDIR)/asttrack lib-shared ## the Python tests
 	@touch $@
 
 lint-python: .venv/installed ## static analysis and layout of the Python sources
-	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden ../../tests/soak && \
-	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden ../../tests/soak && $(CURDIR)/.venv/bin/mypy
+	cd bindings/python && $(CURDIR)/.venv/bin/ruff check . ../../examples/python ../../tests/golden ../../tests/soak ../../calibration && \
+	    $(CURDIR)/.venv/bin/ruff format --check . ../../examples/python ../../tests/golden ../../tests/soak ../../calibration && $(CURDIR)/.venv/bin/mypy
 
 # What finds the inputs: libFuzzer, which comes with clang. Findings lie in $(BUILDDIR)/found; a crash becomes a file of
 # tests/fuzz/corpus, which every run of the tests replays.
@@ -423,6 +433,20 @@ accuracy-tables: .venv/installed $(BUILDDIR)/asttrack ## measure what docs/accur
 	    --out $(BUILDDIR)/accuracy/recovery
 	$(PYTHON) scripts/insert_tables.py docs/accuracy.md $(BUILDDIR)/accuracy
 
+# Linked with a step's predictors watched; the constants themselves stay in src/confidence.c.
+observed_command := $(BUILDDIR)/asttrack-observed
+tunable := $(eight) car panda motor_rolling
+$(BUILDDIR)/obj/calibration/%.o: calibration/%.c $(BUILDDIR)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(quiet)$(CC) $(command_flags) -iquote src -c -o $@ $<
+$(observed_command): $(BUILDDIR)/obj/calibration/observe.o $(command_objects) $(static_lib) $(BUILDDIR)/sources
+	$(call say,LINK)
+	$(quiet)$(link) -Wl,--wrap=ast_confidence_probability -o $@ $< $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
+.PHONY: calibrate
+calibrate: $(observed_command) .venv/installed ## fit the score of the robust preset to ground truth, beside the constants of src/confidence.c
+	.venv/bin/python calibration/fit.py --command $< --seeds $(SEEDS) --jobs $(JOBS) $(addprefix $(SEQUENCES)/,$(tunable))
+
 lint: ## static analysis of the C sources
 	@$(CLANG_TIDY) --version >/dev/null || { echo "no $(CLANG_TIDY): on Debian, apt-get install clang-tidy" >&2; exit 1; }
 	@printf '%s\n' $(filter-out $(if $(filter no,$(LAPACKE)),src/linalg_lapacke.c),$(wildcard src/*.c examples/*.c bench/*.c)) | \
@@ -442,8 +466,8 @@ analyse: ## static analysis by gcc -fanalyzer and cppcheck
 # A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
 # valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long.
 memcheck: unity ## the C tests under valgrind, with the builtin backend
-	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' \
-	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite' test-c
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' CPPFLAGS='$(CPPFLAGS) -DAST_TEST_VALGRIND' \
+	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite' test-c
 
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)

@@ -109,21 +109,13 @@ struct samples {
     bool cells;
 };
 
-static const struct peak_sampler *const samplers[PEAK_SAMPLERS] = {
-    &peak_portable,
-#ifdef AST_BENCH_NATIVE
-    &peak_native,
-    &peak_narrow,
-#endif
-};
-
 /* Seconds of a patch, the best of rounds and samplers. The window stands in the middle and wanders whole pixels around it, as candidates do. */
 static double patch_peak(const struct bench *b, const struct samples *s) {
     enum { WANDER = 4, ROOM = PEAK_SIDE * PEAK_SIDE * PEAK_DIRECTIONS };
     float *line = malloc(PEAK_LINE * sizeof *line), *out = malloc(ROOM * sizeof *out);
     double best = HUGE_VAL, sink = 0;
     for (int r = 0; r <= b->rounds * PEAK_SAMPLERS && line != NULL && out != NULL; r++) {
-        const struct peak_sampler *sampler = samplers[r % PEAK_SAMPLERS];
+        const struct peak_sampler *sampler = peak_samplers[r % PEAK_SAMPLERS];
         int patches = 0;
         double spent = 0;
         const double before = clock_processor();

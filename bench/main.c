@@ -50,7 +50,8 @@ struct arguments {
 };
 
 /* False after reporting what is wrong with the value. */
-static bool take(struct arguments *a, int id, const char *value) {
+static bool take(void *to, int id, const char *value) {
+    struct arguments *a = to;
     switch (id) {
     case OPTION_QUICK: a->quick = true; return true;
     case OPTION_ROUNDS: return option_integer("--rounds", value, 1, ROUNDS_MOST, &a->rounds);
@@ -66,18 +67,6 @@ static bool take(struct arguments *a, int id, const char *value) {
     }
     a->positional[a->positionals++] = value;
     return true;
-}
-
-/* OPTION_END when all is read; OPTION_HELP or OPTION_ERROR otherwise. */
-static int read_arguments(struct arguments *a, int argc, char **argv) {
-    option_reader reader;
-    option_start(&reader, argc, argv, table);
-    for (;;) {
-        const char *value;
-        const int id = option_next(&reader, &value);
-        if (id == OPTION_END || id == OPTION_HELP || id == OPTION_ERROR) return id;
-        if (!take(a, id, value)) return OPTION_ERROR;
-    }
 }
 
 /* The synthetic scene, and a real sequence where there is one. */
@@ -166,7 +155,7 @@ int main(int argc, char **argv) {
     memset(&a, 0, sizeof a);
     interrupt_install();
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* tables appear as they are measured, in a pipe too */
-    const int end = read_arguments(&a, argc, argv);
+    const int end = option_read(argc, argv, table, take, &a);
     int code = EXIT_OK;
     if (end == OPTION_HELP) {
         print_help();

@@ -3,6 +3,14 @@
 #include <math.h>
 #include <string.h>
 
+const struct peak_sampler *const peak_samplers[PEAK_SAMPLERS] = {
+    &peak_portable,
+#ifdef AST_BENCH_NATIVE
+    &peak_native,
+    &peak_narrow,
+#endif
+};
+
 /* Integral of the linear interpolation's triangle up to t. */
 static float interpolated(float t) {
     const float inside = fminf(1.0f, fmaxf(-1.0f, t));

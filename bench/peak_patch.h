@@ -33,5 +33,7 @@ enum { PEAK_SAMPLERS = 3 };
 #else
 enum { PEAK_SAMPLERS = 1 };
 #endif
+/* All of them. */
+extern const struct peak_sampler *const peak_samplers[PEAK_SAMPLERS];
 
 #endif

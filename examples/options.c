@@ -71,6 +71,17 @@ int option_next(option_reader *reader, const char **value) {
     return o->id;
 }
 
+int option_read(int argc, char **argv, const option *table, option_take *take, void *to) {
+    option_reader reader;
+    option_start(&reader, argc, argv, table);
+    for (;;) {
+        const char *value;
+        const int id = option_next(&reader, &value);
+        if (id == OPTION_END || id == OPTION_HELP || id == OPTION_ERROR) return id;
+        if (!take(to, id, value)) return OPTION_ERROR;
+    }
+}
+
 void option_print(const option *table) {
     for (const option *o = table; o->name != NULL; ++o) {
         char left[64];

@@ -42,7 +42,8 @@ typedef struct arguments {
 } arguments;
 
 /* False after reporting what is wrong with the value. */
-static bool take(arguments *a, int id, const char *value) {
+static bool take(void *to, int id, const char *value) {
+    arguments *a = to;
     scene_options *o = &a->scene;
     a->events = a->events || id == OPTION_OCCLUSION || id == OPTION_LEAVE || id == OPTION_CUT;
     switch (id) {
@@ -61,18 +62,6 @@ static bool take(arguments *a, int id, const char *value) {
     }
     a->directory = value;
     return true;
-}
-
-/* OPTION_END when all is read; OPTION_HELP or OPTION_ERROR otherwise. */
-static int read_arguments(arguments *a, int argc, char **argv) {
-    option_reader reader;
-    option_start(&reader, argc, argv, table);
-    for (;;) {
-        const char *value;
-        const int id = option_next(&reader, &value);
-        if (id == OPTION_END || id == OPTION_HELP || id == OPTION_ERROR) return id;
-        if (!take(a, id, value)) return OPTION_ERROR;
-    }
 }
 
 static bool check_arguments(const arguments *a) {
@@ -189,7 +178,7 @@ static bool synthesise(const scene_options *o, const char *directory) {
 
 int command_synth(int argc, char **argv) {
     arguments a = {{320, 240, 200, 3, 0, 0, false, 1}, false, NULL};
-    const int end = read_arguments(&a, argc, argv);
+    const int end = option_read(argc, argv, table, take, &a);
     if (end == OPTION_HELP) {
         print_help();
         return EXIT_OK;

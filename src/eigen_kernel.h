@@ -13,7 +13,7 @@ static int rotate_lanes(int n, ast_real *restrict a, ast_real *restrict vectors,
     for (int l = 0; l < AST_LANES; l++) {
         const ast_real cross = pq[l], apart = qq[l] - pp[l];
         /* Relative to both diagonals, so that small eigenvalues converge too; a semidefinite matrix is the rule here. */
-        const ast_real bound = AST_REAL_EPSILON * ast_sqrt(ast_fabs(pp[l]) * ast_fabs(qq[l]));
+        const ast_real bound = ast_real_epsilon() * ast_sqrt(ast_fabs(pp[l]) * ast_fabs(qq[l]));
         const int active = ast_fabs(cross) > bound;
         const ast_real sum = ast_fabs(apart) + ast_sqrt(apart * apart + 4 * (cross * cross));
         const ast_real quotient = 2 * cross / (sum > 0 ? sum : 1);

@@ -16,6 +16,9 @@
 #ifndef AST_LANES
 #define AST_LANES 16
 #endif
+#if AST_LANES != 4 && AST_LANES != 8 && AST_LANES != 16
+#error "AST_LANES: say 4, 8 or 16"
+#endif
 
 /* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
  * AST_ONE_KERNEL to leave them out. */

@@ -22,8 +22,10 @@ typedef AST_REAL ast_real;
 #define AST_REAL_IS_DOUBLE AST_REAL_EXPANDED(AST_REAL)
 
 #if AST_REAL_IS_DOUBLE
-#define AST_REAL_EPSILON DBL_EPSILON
 #define AST_REAL_LEAST DBL_MIN
+static inline ast_real ast_real_epsilon(void) {
+    return DBL_EPSILON;
+}
 static inline ast_real ast_sqrt(ast_real v) {
     return AST_SQUARE_ROOT(v);
 }
@@ -38,8 +40,10 @@ static inline ast_real ast_exp(ast_real v) {
     return ast_exp_double(v);
 }
 #else
-#define AST_REAL_EPSILON FLT_EPSILON
 #define AST_REAL_LEAST FLT_MIN
+static inline ast_real ast_real_epsilon(void) {
+    return FLT_EPSILON;
+}
 static inline ast_real ast_sqrt(ast_real v) {
     return ast_sqrtf(v);
 }
@@ -55,9 +59,6 @@ static inline ast_real ast_exp(ast_real v) {
 #endif
 static inline ast_real ast_fabs(ast_real v) {
     return v < 0 ? -v : v;
-}
-static inline ast_real ast_real_epsilon(void) {
-    return AST_REAL_EPSILON;
 }
 
 #define AST_HALF_PI ((ast_real)1.57079632679489661923)

@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 
+#include "support_watched.h"
+
 static long allocation_count; /* changed by any thread */
 
 static inline void allocation_tick(void) {
@@ -18,16 +20,7 @@ static inline long allocations(void) {
     return __atomic_load_n(&allocation_count, __ATOMIC_SEQ_CST);
 }
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define ALLOCATION_HOOKS
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ALLOCATION_HOOKS
-#endif
-
-#ifdef ALLOCATION_HOOKS
+#if SANITIZED
 
 /* Part of every sanitizer that has an allocator; its header is not installed with every compiler. */
 int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void *, size_t),

@@ -11,14 +11,6 @@ enum { WIDTH = 160, HEIGHT = 120, LENGTH = PEAK_SIDE * PEAK_SIDE };
 
 static uint8_t pixels[WIDTH * HEIGHT];
 
-static const struct peak_sampler *const samplers[PEAK_SAMPLERS] = {
-    &peak_portable,
-#ifdef AST_BENCH_NATIVE
-    &peak_native,
-    &peak_narrow,
-#endif
-};
-
 void setUp(void) {
     struct noise noise = {5};
     for (int i = 0; i < WIDTH * HEIGHT; i++) pixels[i] = (uint8_t)noise_int(&noise, 0, 255);
@@ -53,7 +45,7 @@ static void compare(const ast_box *window, int width, int height) {
     peak_aim(&columns, window->x, window->w, width, 1);
     peak_aim(&rows, window->y, window->h, height, 1);
     for (int s = 0; s < PEAK_SAMPLERS; s++) {
-        samplers[s]->patch(&columns, &rows, pixels, WIDTH, line, got);
+        peak_samplers[s]->patch(&columns, &rows, pixels, WIDTH, line, got);
         for (int i = 0; i < width * height; i++) TEST_ASSERT_FLOAT_WITHIN(2e-5f, expected[i], got[i] / 255.0f);
     }
 }
@@ -79,7 +71,7 @@ static void test_cells_are_interpolated(void) {
     peak_aim(&rows, 7.9f, 25.0f, CELLS, 0);
     TEST_ASSERT_EQUAL_INT(2, columns.taps);
     for (int s = 0; s < PEAK_SAMPLERS; s++) {
-        samplers[s]->cells(&columns, &rows, pixels, SIDE, got);
+        peak_samplers[s]->cells(&columns, &rows, pixels, SIDE, got);
         for (int i = 0; i < CELLS * CELLS; i++) {
             const double x = 5.2 + (i % CELLS + 0.5) * 20.0 / CELLS - 0.5, y = 7.9 + (i / CELLS + 0.5) * 25.0 / CELLS - 0.5;
             const int left = (int)floor(x), top = (int)floor(y);

@@ -9,6 +9,7 @@
 #include "support_noise.h"
 #include "support_render.h"
 #include "support_tracker.h"
+#include "support_watched.h"
 #include "unity.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };
@@ -154,7 +155,7 @@ static void test_every_preset_follows(void) {
     for (int p = 0; p < 3; p++) {
         for (int b = 0; b < BACKENDS; b++) {
             const ast_config cfg = preset(presets[p]);
-            const struct fit fit = follow(&cfg, backends[b], 1, 1.0, 60);
+            const struct fit fit = follow(&cfg, backends[b], 1, 1.0, WATCHED ? 20 : 60);
             assert_follows(&fit, 3.0, names[p]);
         }
     }

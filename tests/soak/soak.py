@@ -50,8 +50,9 @@ def make_film() -> tuple[list[np.ndarray], list[tuple[float, float, float, float
 
 
 def resident_kib() -> int:
-    """Resident memory of this process."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * (resource.getpagesize() // 1024)
+    """Resident memory of this process, without pages of files, which come and go."""
+    _, resident, shared, *_ = map(int, Path("/proc/self/statm").read_text().split())
+    return (resident - shared) * (resource.getpagesize() // 1024)
 
 
 def require(holds: bool, promise: str) -> None:

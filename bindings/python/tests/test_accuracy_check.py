@@ -57,6 +57,18 @@ def test_an_update_writes_bounds_that_are_kept(sequences: Path, tmp_path: Path) 
     assert check(tmp_path, written, "--sequences", sequences).returncode == 0
 
 
+def test_a_scene_that_most_seeds_lose_gives_no_bounds(tmp_path: Path) -> None:
+    # In the place of the command: every track is a bad one.
+    stand_in = tmp_path / "asttrack"
+    line = "result name=a frames=9 cle=90 precision20=0.4 success=0.3 fps=1 lost=0"
+    stand_in.write_text(f'#!/bin/sh\n[ "$1" = synth ] && mkdir "$2"\n[ "$1" = --version ] && echo "JPEG: yes"\necho "{line}"\n')
+    stand_in.chmod(0o755)
+    done = check(tmp_path, "scene:3 8 0.9 0.5\n", "--command", stand_in, "--sequences", tmp_path, "--update")
+    assert done.returncode == 1
+    assert "most seeds lose scene:3" in done.stderr
+    assert (tmp_path / "bounds.txt").read_text() == "scene:3 8 0.9 0.5\n"
+
+
 @pytest.mark.parametrize(
     ("bounds", "message"),
     [

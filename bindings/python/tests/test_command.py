@@ -108,10 +108,18 @@ def test_bad_usage_is_one_line_and_status_2(words: list[str], message: str, caps
 @pytest.mark.parametrize(
     ("module", "words", "message"),
     [
-        ("cv2", ["eval", "x"], "eval: needs OpenCV, which is not installed: pip install 'asttrack[eval]'"),
+        ("cv2", ["eval", "x"], "eval: needs OpenCV, which is not installed: pip install './bindings/python[eval]' in its sources"),
         ("cv2", ["track", "x", "--box", "1,2,3,4"], "track: needs OpenCV, which"),
-        ("matplotlib", ["gallery", "x"], "gallery: needs matplotlib, which is not installed: pip install 'asttrack[eval]'"),
-        ("distributed", ["fleet", "x"], "fleet: needs dask.distributed, which is not installed: pip install 'asttrack[fleet]'"),
+        (
+            "matplotlib",
+            ["gallery", "x"],
+            "gallery: needs matplotlib, which is not installed: pip install './bindings/python[eval]' in its sources",
+        ),
+        (
+            "distributed",
+            ["fleet", "x"],
+            "fleet: needs dask.distributed, which is not installed: pip install './bindings/python[fleet]' in its sources",
+        ),
     ],
 )
 def test_what_is_not_installed_is_named_with_its_extra(module: str, words: list[str], message: str) -> None:
@@ -293,7 +301,7 @@ def test_eval_without_contrib_runs_the_other_trackers(
     assert main(["eval", str(scene), "--trackers", "asttrack:tiny,medianflow", "--seeds", "1"]) == 1
     told = capsys.readouterr()
     assert "medianflow: this OpenCV" in told.err
-    assert "pip install 'asttrack[peers]'" in told.err
+    assert "pip install './bindings/python[peers]' in its sources" in told.err
     assert "asttrack:tiny" in told.out
 
 
@@ -394,7 +402,7 @@ def test_bench_shows_and_keeps_earlier_figures(tmp_path: Path) -> None:
 def test_bench_refuses_what_are_no_figures(tmp_path: Path) -> None:
     path = tmp_path / "figures.json"
     path.write_text("{}")
-    assert "not figures that `bench --out` wrote" in complaint(command("bench", "--read", path), 1)
+    assert "not the figures of `bench --out`" in complaint(command("bench", "--read", path), 1)
     assert "not the figures of `make bench`" in complaint(command("bench", "--core", path), 1)
     assert "--only-trackers" in complaint(command("bench", "--only-trackers", "--trackers", ""), 2)
 

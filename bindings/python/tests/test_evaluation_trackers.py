@@ -88,7 +88,7 @@ def test_an_opencv_without_contrib_says_which_extra_brings_the_tracker(monkeypat
     monkeypatch.delattr(cv2, "TrackerCSRT_create")
     monkeypatch.delattr(cv2, "legacy")
     for label in ("csrt", "tld"):
-        with pytest.raises(MissingExtraError, match=rf"{label}: this OpenCV .* pip install 'asttrack\[peers\]'"):
+        with pytest.raises(MissingExtraError, match=rf"{label}: this OpenCV .* pip install './bindings/python\[peers\]'"):
             PEERS[label].check()
     PEERS["mil"].check()
 

@@ -60,7 +60,7 @@ def main(words: Sequence[str] | None = None) -> int:
         name, extra = EXTRAS.get((error.name or "").partition(".")[0], (None, None))
         if name is None:
             raise
-        say(f"{arguments.command}: needs {name}, which is not installed: pip install 'asttrack[{extra}]'")
+        say(f"{arguments.command}: needs {name}, which is not installed: pip install './bindings/python[{extra}]' in its sources")
         return DATA
     except KeyboardInterrupt:
         say("interrupted")

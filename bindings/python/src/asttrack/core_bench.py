@@ -1,28 +1,17 @@
 """The figures that `make bench` writes: the C library's own, measured without Python."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from asttrack.evaluation.tables import align
-from asttrack.failures import DataError, unusable
+from asttrack.json_file import read_figures
 
 _PARTS = ("conditions", "sequences", "growth", "roofline", "threads", "instructions")
 
 
 def read_core(path: Path) -> dict[str, Any]:
     """Reads them. Raises DataError for what `make bench` has not written."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise unusable(path, error) from error
-    except ValueError as error:
-        raise DataError(f"{path}: not JSON") from error
-    missing = [part for part in _PARTS if not isinstance(found, dict) or part not in found]
-    if missing:
-        raise DataError(f"{path}: not the figures of `make bench`: no {', '.join(missing)}")
-    core: dict[str, Any] = found
-    return core
+    return read_figures(path, _PARTS, "make bench")
 
 
 def spread_text(spread: dict[str, Any] | None, digits: int) -> str:

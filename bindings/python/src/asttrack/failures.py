@@ -24,7 +24,7 @@ class MissingExtraError(DataError):
     """
 
     def __init__(self, what: str, extra: str) -> None:
-        super().__init__(f"{what}: pip install 'asttrack[{extra}]'")
+        super().__init__(f"{what}: pip install './bindings/python[{extra}]' in its sources")
         self.what = what
         self.extra = extra
 

@@ -7,7 +7,10 @@ from typing import Any
 
 from asttrack.command.arguments import add_preset, positive
 from asttrack.command.speech import say
-from asttrack.failures import DataError, MissingExtraError, UsageError, unusable
+from asttrack.failures import DataError, MissingExtraError, UsageError
+from asttrack.json_file import read_figures
+
+_PARTS = ("conditions", "libraries", "races", "core")
 
 TRACKERS = "asttrack:robust,asttrack:paper,asttrack:tiny,csrt,kcf,mil,medianflow,mosse,tld,boosting"
 
@@ -76,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     problems: list[str] = []
     core = read_core(arguments.core) if arguments.core is not None else None
-    figures = _read(arguments.read) if arguments.read is not None else _measured(arguments, problems)
+    figures = read_figures(arguments.read, _PARTS, "bench --out") if arguments.read is not None else _measured(arguments, problems)
     if core is not None:
         figures["core"] = core
     for problem in problems:
@@ -90,19 +93,6 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.markdown is not None:
             put_into(arguments.markdown, figures)
     return int(bool(problems))
-
-
-def _read(path: Path) -> dict[str, Any]:
-    """The figures of an earlier run. Raises DataError for what is none."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise unusable(path, error) from error
-    except ValueError as error:
-        raise DataError(f"{path}: not JSON") from error
-    if not isinstance(found, dict) or not {"conditions", "libraries", "races", "core"} <= found.keys():
-        raise DataError(f"{path}: not figures that `bench --out` wrote")
-    return found
 
 
 def _measured(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:

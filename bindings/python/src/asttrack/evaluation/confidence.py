@@ -41,12 +41,17 @@ class Judged:
     delays: Floats
 
 
+def judged_frames(shares: Floats, absent: Bools) -> tuple[Bools, Bools]:
+    """Of which frames something is known, and which are wrong, from their overlaps (nan without ground truth)."""
+    known = absent | ~np.isnan(shares)
+    known[0] = False
+    return known, absent | (np.nan_to_num(shares) < WRONG)
+
+
 def judge(measured: Measured) -> Judged:
     """The frames of a run against its truth."""
     absent = measured.absent
-    known = absent | ~np.isnan(measured.shares)
-    known[0] = False
-    wrong = absent | (np.nan_to_num(measured.shares) < WRONG)
+    known, wrong = judged_frames(measured.shares, absent)
     lost = ~measured.run.ok
     return Judged(wrong[known], ~absent[known], lost[known], measured.run.score[known], _delays(wrong, known, lost))
 
