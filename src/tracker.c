@@ -21,6 +21,17 @@ static void cloud_layout(struct ast_cloud *cloud, int count, struct ast_arena *a
     cloud->weight = ast_arena_take(arena, (size_t)count, sizeof *cloud->weight);
 }
 
+/* tile: vectors. While the arena counts there is no desk, and what is handed out goes nowhere. */
+static void desk_layout(struct ast_desk *desk, const struct ast_tracker *t, size_t tile, struct ast_arena *arena) {
+    struct ast_desk counted;
+    struct ast_desk *d = desk != NULL ? desk : &counted;
+    memset(d, 0, sizeof *d);
+    ast_features_scratch_layout(&d->features, &t->cfg, arena);
+    t->scoring->tile_layout(&d->scoring, &t->cfg, t->la, t->dim, arena);
+    d->tile = ast_arena_take(arena, (size_t)t->stride * tile, sizeof *d->tile);
+    d->work = ast_arena_take(arena, t->work_count, sizeof *d->work);
+}
+
 /* Fills *t and hands out the arena; the caller has taken the tracker itself. Runs once to count and once to bind. */
 static void layout(struct ast_tracker *t, const ast_config *cfg, const struct ast_linalg *la, struct ast_arena *arena) {
     enum { FLOATS = AST_ALIGNMENT / sizeof(float) };
@@ -49,14 +60,16 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     cloud_layout(&t->proposal, cfg->particles, arena);
     ast_view_layout(&t->view, cfg, arena);
     ast_features_layout(&t->features, cfg, arena);
-    t->scoring->layout(&t->scoring_scratch, cfg, la, t->dim, arena);
+    t->scoring->layout(&t->scoring_scratch, cfg, t->dim, arena);
+    t->work_count = ast_subspace_work(la, t->dim, cfg->history + 1);
     const size_t given = (size_t)cfg->history + 1; /* a start keeps the patches there, and the background's mean behind them */
-    t->tile = ast_arena_take(arena, stride * (AST_TILE > given ? AST_TILE : given), sizeof *t->tile);
+    t->desk = ast_arena_take(arena, (size_t)cfg->threads, sizeof *t->desk);
+    for (int w = 0; w < cfg->threads; w++)
+        desk_layout(t->desk != NULL ? &t->desk[w] : NULL, t, w == 0 && given > AST_TILE ? given : AST_TILE, arena);
+    t->workers = ast_workers_layout(cfg->threads, arena);
     t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
     t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
     t->basis = ast_arena_take(arena, stride * (size_t)cfg->basis_size, sizeof *t->basis);
-    t->work_count = ast_subspace_work(la, t->dim, cfg->history + 1);
-    t->work = ast_arena_take(arena, t->work_count, sizeof *t->work);
 }
 
 size_t ast_mem_size_backend(const ast_config *cfg, const struct ast_linalg *la) {
@@ -96,6 +109,10 @@ int ast_init_backend(ast_tracker **out, const ast_config *cfg, const struct ast_
         ast_free(t);
         return AST_E_BACKEND;
     }
+    if (ast_workers_start(t->workers) != 0) {
+        ast_free(t);
+        return AST_E_THREAD;
+    }
     *out = t;
     return AST_OK;
 }
@@ -105,10 +122,10 @@ int ast_init(ast_tracker **out, const ast_config *cfg, void *mem, size_t mem_siz
 }
 
 void ast_free(ast_tracker *t) {
+    if (t == NULL) return;
+    ast_workers_end(t->workers);
 #ifndef AST_NO_HEAP
-    if (t != NULL) free(t->owned);
-#else
-    (void)t;
+    free(t->owned);
 #endif
 }
 
@@ -132,9 +149,13 @@ static void look(struct ast_tracker *t, const ast_frame *frame, float left, floa
 }
 
 /* The feature vector of a box, in the frame that was looked at. */
-static void describe(struct ast_tracker *t, const ast_box *box, float *vector) {
+static void describe_at(struct ast_desk *desk, const struct ast_tracker *t, const ast_box *box, float *vector) {
     const ast_box window = ast_view_box(&t->view, box);
-    ast_features_vector(&t->features, &t->view.image, &window, vector);
+    ast_features_vector(&t->features, &desk->features, &t->view.image, &window, vector);
+}
+
+static void describe(struct ast_tracker *t, const ast_box *box, float *vector) {
+    describe_at(t->desk, t, box, vector);
 }
 
 /* The mean that draw_background will give after a start: the same draws, without keeping them. mean, vector: dim. */
@@ -163,8 +184,8 @@ static void refresh_background(struct ast_tracker *t, const ast_box *object) {
     for (int i = 0; i < t->cfg.background_refresh; i++) {
         const int slot = (int)(ast_random_bits(&t->random) % (uint32_t)t->background.size);
         const ast_box box = ast_background_box(object, &t->random);
-        describe(t, &box, t->tile);
-        ast_background_replace(&t->background, slot, t->tile);
+        describe(t, &box, t->desk->tile);
+        ast_background_replace(&t->background, slot, t->desk->tile);
     }
 }
 
@@ -172,7 +193,7 @@ static void refresh_background(struct ast_tracker *t, const ast_box *object) {
 static int fit_images(struct ast_tracker *t, const struct ast_images *images, const float *background_mean, int *rank) {
     const int failed =
         ast_subspace_of(t->la, images, t->cfg.basis == AST_BASIS_CENTRED, t->background.size > 0 ? background_mean : NULL,
-                        t->cfg.basis_size, t->mean, t->basis, t->stride, rank, t->work, t->work_count);
+                        t->cfg.basis_size, t->mean, t->basis, t->stride, rank, t->desk->work, t->work_count);
     return failed ? AST_E_BACKEND : AST_OK;
 }
 
@@ -226,13 +247,14 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
     for (int32_t j = 0; j < used; j++) {
         const ast_box *box = &boxes[count - used + j];
         const struct ast_state state = state_of(&t->cfg, box, &boxes[0]);
-        float *patch = t->tile + (size_t)j * (size_t)t->stride;
+        float *patch = t->desk->tile + (size_t)j * (size_t)t->stride;
         look(t, &frames[count - used + j], state.x, state.y, state.x, state.y, state.scale);
         describe(t, box, patch);
         column[j] = patch;
     }
     ast_images_mean(&images, t->mean);
-    float *background_mean = t->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
+    float *background_mean =
+        t->desk->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
     if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, t->basis);
     if (used == t->cfg.history && fit_images(t, &images, background_mean, &rank) != AST_OK) {
         t->box_width = width_before;
@@ -277,32 +299,47 @@ static void distances_to_mean(struct ast_tracker *t, const float *mean, const fl
     }
 }
 
+/* What the tiles of a frame share. */
+struct tiles {
+    struct ast_tracker *t;
+    struct ast_scene scene; /* but for the work, which is at each desk */
+    int models;
+};
+
+static int score_part(void *shared, int worker, int part) {
+    const struct tiles *tiles = shared;
+    struct ast_tracker *t = tiles->t;
+    struct ast_desk *desk = &t->desk[worker];
+    const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
+    float *distance = t->distance + (size_t)first * (size_t)tiles->models;
+    struct ast_scene scene = tiles->scene;
+    scene.work = desk->work;
+    for (int i = 0; i < count; i++) {
+        const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
+        const ast_box window = window_of(t, &state);
+        describe_at(desk, t, &window, desk->tile + (size_t)i * (size_t)t->stride);
+    }
+    if (t->bag.count > 0) return t->scoring->tile(&t->scoring_scratch, &desk->scoring, &scene, desk->tile, count, distance);
+    distances_to_mean(t, t->mean, desk->tile, count, distance);
+    return 0;
+}
+
 /* Distances of all proposed particles to all models, tile by tile. */
 static int score_particles(struct ast_tracker *t, int models) {
-    const struct ast_scene scene = {&t->cfg, t->la,   t->kernels,   &t->history, &t->bag, t->background.size,
-                                    t->tile, t->work, t->work_count};
+    struct tiles tiles = {
+        t,
+        {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
+        models};
     if (t->bag.count == 0) {
         const float *column[AST_MAX_HISTORY];
         const struct ast_images images = {column, t->history.count, t->dim};
         for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
         ast_images_mean(&images, t->mean);
-    } else if (t->scoring->prepare(&t->scoring_scratch, &scene) != 0) {
+    } else if (t->scoring->prepare(&t->scoring_scratch, &t->desk->scoring, &tiles.scene) != 0) {
         return AST_E_BACKEND;
     }
-    for (int first = 0; first < t->proposal.count; first += AST_TILE) {
-        const int count = t->proposal.count - first < AST_TILE ? t->proposal.count - first : AST_TILE;
-        float *distance = t->distance + (size_t)first * (size_t)models;
-        for (int i = 0; i < count; i++) {
-            const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
-            const ast_box window = window_of(t, &state);
-            describe(t, &window, t->tile + (size_t)i * (size_t)t->stride);
-        }
-        if (t->bag.count == 0)
-            distances_to_mean(t, t->mean, t->tile, count, distance);
-        else if (t->scoring->tile(&t->scoring_scratch, &scene, t->tile, count, distance) != 0)
-            return AST_E_BACKEND;
-    }
-    return AST_OK;
+    const struct ast_task task = {score_part, &tiles, (t->proposal.count + AST_TILE - 1) / AST_TILE};
+    return ast_workers_share(t->workers, &task) != 0 ? AST_E_BACKEND : AST_OK;
 }
 
 /* Looks at all that the proposed particles can show. */
@@ -362,7 +399,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     }
 
     /* The winner's vector again (the tile has been reused), what it is worth, and its subspace when a model is due. */
-    float *vector = t->tile;
+    float *vector = t->desk->tile;
     describe(t, &found_box, vector);
     const struct ast_resemblance resemblance =
         ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
