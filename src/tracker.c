@@ -32,16 +32,23 @@ static void desk_layout(struct ast_desk *desk, const struct ast_tracker *t, size
     d->work = ast_arena_take(arena, t->work_count, sizeof *d->work);
 }
 
+/* Floats from one vector to the next. Vectors a power of two apart would meet in the same few lines of a cache when a product reads many
+ * of them side by side: a line more, and they do not. */
+static int stride_of(int dim) {
+    enum { LINE = AST_ALIGNMENT / sizeof(float), CROWDED = 512 };
+    const int stride = (dim + LINE - 1) / LINE * LINE;
+    return stride % CROWDED == 0 ? stride + LINE : stride;
+}
+
 /* Fills *t and hands out the arena; the caller has taken the tracker itself. Runs once to count and once to bind. */
 static void layout(struct ast_tracker *t, const ast_config *cfg, const struct ast_linalg *la, struct ast_arena *arena) {
-    enum { FLOATS = AST_ALIGNMENT / sizeof(float) };
     memset(t, 0, sizeof *t);
     memcpy(&t->cfg, cfg, sizeof t->cfg); /* with its padding */
     t->la = la;
     t->kernels = ast_kernels();
     t->scoring = ast_scoring_of(cfg);
     t->dim = ast_features_length(cfg);
-    t->stride = (t->dim + FLOATS - 1) / FLOATS * FLOATS;
+    t->stride = stride_of(t->dim);
 
     const size_t stride = (size_t)t->stride;
     cloud_layout(&t->cloud, cfg->particles, arena);

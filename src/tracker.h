@@ -30,7 +30,7 @@ struct ast_tracker {
     const struct ast_scoring *scoring;
     void *owned; /* the block, when ast_init allocated it */
     int dim;     /* D: floats in a feature vector */
-    int stride;  /* floats from one vector to the next: D rounded up to AST_ALIGNMENT bytes */
+    int stride;  /* floats from one vector to the next: at least D, and a multiple of AST_ALIGNMENT bytes */
 
     /* State, saved by ast_save. Changed only when a call succeeds. */
     int started;
