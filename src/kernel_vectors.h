@@ -44,6 +44,9 @@ typedef float sixteen __attribute__((vector_size(64), aligned(4), may_alias));
 #define EIGHT_NUMBERS(bytes)                                                                                                       \
     __builtin_convertvector(                                                                                                       \
         __builtin_convertvector(__builtin_convertvector(*(const eight_bytes *)(bytes), eight_halves), eight_words), eight)
+typedef uint32_t sixteen_counts __attribute__((vector_size(64), aligned(4), may_alias));
+#define SIXTEEN_COUNTS(bytes)                                                                                                      \
+    __builtin_convertvector(__builtin_convertvector(*(const sixteen_bytes *)(bytes), sixteen_halves), sixteen_counts)
 #define SIXTEEN_NUMBERS(bytes)                                                                                                     \
     __builtin_convertvector(                                                                                                       \
         __builtin_convertvector(__builtin_convertvector(*(const sixteen_bytes *)(bytes), sixteen_halves), sixteen_words), sixteen)

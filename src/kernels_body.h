@@ -28,6 +28,7 @@ const struct ast_kernels AST_KERNELS = {
     .axis = axis,
     .rows = rows,
     .normalise = normalise,
+    .maps = maps,
     .cells = cells,
     .project = project,
     .decompose = decompose,
