@@ -53,6 +53,8 @@ struct ast_kernels {
 
     /* x'y, in a fixed order: ast_dot. */
     ast_real (*dot)(const float *x, const float *y, int n);
+    /* x[i] = e^x[i], for those whose result is a number. */
+    void (*exponentials)(ast_real *x, int n);
     /* vector -= origin; the squared length of what is left. */
     ast_real (*depart)(float *vector, const float *origin, int n);
     /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
