@@ -306,20 +306,21 @@ static void distances_to_mean(struct ast_tracker *t, const float *mean, const fl
     }
 }
 
-/* What the tiles of a frame share. */
-struct tiles {
+/* What the parts of scoring a frame's candidates share. */
+struct round {
     struct ast_tracker *t;
+    const ast_frame *frame;
     struct ast_scene scene; /* but for the work, which is at each desk */
     int models;
 };
 
 static int score_part(void *shared, int worker, int part) {
-    const struct tiles *tiles = shared;
-    struct ast_tracker *t = tiles->t;
+    const struct round *round = shared;
+    struct ast_tracker *t = round->t;
     struct ast_desk *desk = &t->desk[worker];
     const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
-    float *distance = t->distance + (size_t)first * (size_t)tiles->models;
-    struct ast_scene scene = tiles->scene;
+    float *distance = t->distance + (size_t)first * (size_t)round->models;
+    struct ast_scene scene = round->scene;
     scene.work = desk->work;
     for (int i = 0; i < count; i++) {
         const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
@@ -329,24 +330,6 @@ static int score_part(void *shared, int worker, int part) {
     if (t->bag.count > 0) return t->scoring->tile(&t->scoring_scratch, &desk->scoring, &scene, desk->tile, count, distance);
     distances_to_mean(t, t->mean, desk->tile, count, distance);
     return 0;
-}
-
-/* Distances of all proposed particles to all models, tile by tile. */
-static int score_particles(struct ast_tracker *t, int models) {
-    struct tiles tiles = {
-        t,
-        {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
-        models};
-    if (t->bag.count == 0) {
-        const float *column[AST_MAX_HISTORY];
-        const struct ast_images images = {column, t->history.count, t->dim};
-        for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
-        ast_images_mean(&images, t->mean);
-    } else if (t->scoring->prepare(&t->scoring_scratch, &t->desk->scoring, &tiles.scene) != 0) {
-        return AST_E_BACKEND;
-    }
-    const struct ast_task task = {score_part, &tiles, (t->proposal.count + AST_TILE - 1) / AST_TILE};
-    return ast_workers_share(t->workers, &task) != 0 ? AST_E_BACKEND : AST_OK;
 }
 
 /* Looks at all that the proposed particles can show. */
@@ -362,6 +345,37 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
     look(t, frame, left, top, right, bottom, t->estimate.scale);
 }
 
+/* What all candidates share: the first part is the frame that they show, the second what is known without it. */
+static int prepare_part(void *shared, int worker, int part) {
+    const struct round *round = shared;
+    struct ast_tracker *t = round->t;
+    (void)worker; /* the second part alone needs a desk, and takes the first */
+    if (part == 0) {
+        look_at_cloud(t, round->frame);
+    } else if (t->bag.count > 0) {
+        return t->scoring->prepare(&t->scoring_scratch, &t->desk->scoring, &round->scene);
+    } else {
+        const float *column[AST_MAX_HISTORY];
+        const struct ast_images images = {column, t->history.count, t->dim};
+        for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
+        ast_images_mean(&images, t->mean);
+    }
+    return 0;
+}
+
+/* Distances of all proposed particles to all models, tile by tile. */
+static int score_particles(struct ast_tracker *t, const ast_frame *frame, int models) {
+    struct round round = {
+        t,
+        frame,
+        {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
+        models};
+    const struct ast_task preparation = {prepare_part, &round, 2};
+    const struct ast_task tiles = {score_part, &round, (t->proposal.count + AST_TILE - 1) / AST_TILE};
+    if (ast_workers_share(t->workers, &preparation) != 0) return AST_E_BACKEND;
+    return ast_workers_share(t->workers, &tiles) != 0 ? AST_E_BACKEND : AST_OK;
+}
+
 /* The frame's candidates: the last cloud's, moved on; while the object is lost, half of them search where it was last seen. */
 static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_random *random) {
     const float size = ast_sqrtf(t->box_width * t->box_height) * t->guard.good.scale;
@@ -371,7 +385,6 @@ static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_ra
     ast_cloud_diffuse(&t->proposal, &t->cfg, frame, random);
     ast_guard_widen(&t->guard, &t->cfg, frame, size, &t->proposal);
     if (t->cfg.incumbent) ast_cloud_set(&t->proposal, 0, ast_state_within(t->estimate, &t->cfg, frame));
-    look_at_cloud(t, frame);
 }
 
 static void copy_cloud(struct ast_cloud *to, const struct ast_cloud *from) {
@@ -394,7 +407,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
 
     const int models = t->bag.count > 0 ? t->bag.count : 1;
     t->models = 0; /* until the distances are whole again */
-    error = score_particles(t, models);
+    error = score_particles(t, frame, models);
     if (error != AST_OK) return error;
     const int best = ast_decide(t->distance, t->proposal.count, models, &t->cfg, t->proposal.weight);
     const struct ast_state found = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
