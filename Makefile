@@ -116,9 +116,9 @@ bench_flags = $(command_flags) -iquote src -iquote examples $(if $(filter yes,$(
 	$(if $(filter yes,$(NATIVE)),-DAST_BENCH_NATIVE)
 
 link = $(CC) $(CFLAGS) $(sanitizers) $(LDFLAGS)
-lib_libs := $(if $(filter lapacke,$(BACKEND)),$(lapacke_libs)) -lm
+lib_libs := $(if $(filter lapacke,$(BACKEND)),$(lapacke_libs)) -lm -pthread
 jpeg_libs := $(if $(filter yes,$(JPEG)),-ljpeg)
-test_libs := $(if $(filter yes,$(LAPACKE)),$(lapacke_libs)) $(jpeg_libs) -lm
+test_libs := $(if $(filter yes,$(LAPACKE)),$(lapacke_libs)) $(jpeg_libs) -lm -pthread
 
 static_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/static/%.o)
 shared_objects := $(lib_sources:src/%.c=$(BUILDDIR)/obj/shared/%.o)
@@ -248,7 +248,7 @@ performance: bench $(BUILDDIR)/asttrack .venv/installed ## measure speed beside 
 	    --core $(BUILDDIR)/bench.json --out $(BUILDDIR)/performance.json --markdown docs/performance.md $(PERFORMANCE_ARGS)
 $(bench_program): $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	$(call say,LINK)
-	$(quiet)$(link) -pthread -o $@ $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+	$(quiet)$(link) -o $@ $(bench_objects) $(other_objects) $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
 
 # ---- Tests ----
 
@@ -294,7 +294,7 @@ $(filter-out $(replay_programs),$(test_programs)): $(BUILDDIR)/tests/%: $(BUILDD
 		$(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(BUILDDIR)/sources
 	@mkdir -p $(@D)
 	$(call say,LINK)
-	$(quiet)$(link) -pthread -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
+	$(quiet)$(link) -o $@ $(filter %.o,$^) $(BUILDDIR)/libbench.a $(BUILDDIR)/libexamples.a $(static_lib) $(test_libs)
 
 # The command with faults on demand, for the tests of what it does then.
 faulty_command := $(BUILDDIR)/tests/asttrack-faulty

@@ -34,20 +34,21 @@ static int probed_product_real(int rows, int cols, int depth, const ast_real *a,
     return failed;
 }
 
-static int probed_prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
+static int probed_prepare(union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene) {
     mark(STAGE_VIEW);
-    const int failed = current->scoring->prepare(scratch, scene);
+    const int failed = current->scoring->prepare(scratch, own, scene);
     mark(STAGE_HISTORY);
     return failed;
 }
 
 /* Products are the candidates' inside a tile only: outside, the table is as it was. */
-static int probed_tile(union ast_scratch *scratch, const struct ast_scene *scene, float *patches, int count, float *distance) {
+static int probed_tile(const union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene, float *patches,
+                       int count, float *distance) {
     struct probe *p = current;
     mark(STAGE_PATCHES);
     p->probed_linalg.product = probed_product;
     p->probed_linalg.product_real = probed_product_real;
-    const int failed = p->scoring->tile(scratch, scene, patches, count, distance);
+    const int failed = p->scoring->tile(scratch, own, scene, patches, count, distance);
     p->probed_linalg = *p->linalg;
     mark(STAGE_SMALL);
     return failed;

@@ -18,6 +18,8 @@
  *  - A call that fails leaves the tracker as it was; only the distances of ast_get_particles are gone after a failed step.
  *  - After ast_init nothing allocates memory, in any linear-algebra backend.
  *  - There is no global mutable state: different trackers may be used in different threads at once; one tracker may not.
+ *  - With cfg.threads > 1 ast_init starts threads, which sleep between steps, take no signals, and end in ast_free. They do not live on
+ *    in a child of fork: there, such a tracker must not be used, nor freed.
  *  - Pixel centres lie at integer coordinates: a box covers x - 1/2 .. x + w - 1/2.
  */
 #ifndef ASTTRACK_H
@@ -55,6 +57,7 @@ enum {
     AST_E_ARENA = -10,         /* the caller's block is smaller than ast_mem_size */
     AST_E_OUT_OF_MEMORY = -11, /* the one allocation of ast_init failed */
     AST_E_NO_HEAP = -12,       /* mem == NULL in a build with AST_NO_HEAP */
+    AST_E_THREAD = -13,        /* ast_init could not start the threads that the configuration asks for */
     AST_E_FRAME = -20,         /* a side outside 1..AST_MAX_FRAME, stride < width, or more rows than the memory has addresses */
     AST_E_BOX = -21,           /* box not finite, a side below one pixel or above AST_MAX_FRAME, or wholly outside its frame */
     AST_E_NOT_STARTED = -22,   /* ast_step, ast_save or a look inside before ast_start */
@@ -83,6 +86,7 @@ AST_API const char *ast_backend(void);
 #define AST_MAX_VIEW 256        /* largest view side, pixels */
 #define AST_MAX_CELLS 16        /* most gradient cells in an axis */
 #define AST_MAX_BACKGROUND 128  /* most background vectors */
+#define AST_MAX_THREADS 16      /* most threads that share a step's work */
 
 /* Values of the enumerated fields: plain int32_t in the struct, so that no ABI's enum size matters. */
 enum { AST_PRESET_PAPER = 0, AST_PRESET_ROBUST = 1, AST_PRESET_TINY = 2 };
@@ -183,6 +187,10 @@ typedef struct ast_config {
     float score_lost;      /* without a guard: below this score a frame counts towards AST_LOST, 0 .. score_uncertain */
     int32_t lost_after;    /* consecutive frames that count (with a guard: that it refuses) and make AST_LOST, 1 .. 10000 */
 
+    /* Threads that share a step's work, the caller's own among them, 1 .. AST_MAX_THREADS; 1 alone in a build without threads
+     * (AST_NO_THREADS, AST_NO_HEAP). The results are the same bits for every number. */
+    int32_t threads;
+
     uint64_t seed; /* of the tracker's own random generator; the same seed and frames give the same bits */
 } ast_config;
 
@@ -240,9 +248,9 @@ AST_API size_t ast_mem_size(const ast_config *cfg);
 
 /* Builds a tracker in mem (mem_size bytes, any address, the caller's to keep until ast_free and to release afterwards), or, with
  * mem == NULL, in one allocation of its own that ast_free releases. *cfg is copied. On an error *out is untouched.
- * AST_E_NULL, AST_E_CONFIG, AST_E_STRUCT_SIZE, AST_E_ARENA, AST_E_OUT_OF_MEMORY, AST_E_NO_HEAP. */
+ * AST_E_NULL, AST_E_CONFIG, AST_E_STRUCT_SIZE, AST_E_ARENA, AST_E_OUT_OF_MEMORY, AST_E_NO_HEAP, AST_E_THREAD. */
 AST_API AST_CHECKED int ast_init(ast_tracker **out, const ast_config *cfg, void *mem, size_t mem_size);
-/* Ends a tracker. NULL is accepted; a caller's block is never freed. */
+/* Ends a tracker and its threads: before its block is released or used otherwise. NULL is accepted; a caller's block is never freed. */
 AST_API void ast_free(ast_tracker *t);
 
 /* Starts (or re-targets) on the object inside box. All earlier state is forgotten; the random generator restarts from the seed.
@@ -317,7 +325,7 @@ AST_API size_t ast_save_size(const ast_config *cfg);
 /* Writes the whole state into buffer: versioned, checksummed, little-endian on every machine, so that a restored tracker continues
  * bit for bit. AST_E_NULL, AST_E_NOT_STARTED, AST_E_BUFFER. */
 AST_API AST_CHECKED int ast_save(const ast_tracker *t, void *buffer, size_t size);
-/* Replaces the state of t, which must have the configuration of the saved one (but for `scoring`). AST_E_NULL, AST_E_CORRUPT, AST_E_MISMATCH. */
+/* Replaces the state of t, which must have the configuration of the saved one (but for `scoring` and `threads`). AST_E_NULL, AST_E_CORRUPT, AST_E_MISMATCH. */
 AST_API AST_CHECKED int ast_restore(ast_tracker *t, const void *buffer, size_t size);
 
 /* ---- The geometry on its own ---- */

@@ -32,7 +32,7 @@ try() {
     local target=$1 emulator=$2 compiler=$3 optimisation=$4 real=$5 program=$directory/bits
     shift 5
     if ! "$@" "$optimisation" -DAST_REAL="$real" "${flags[@]}" -o "$program" ${sources[@]} tests/cross/bits.c \
-        examples/cortex-m7/small_scene.c -lm >"$directory/log" 2>&1; then
+        examples/cortex-m7/small_scene.c -lm -pthread >"$directory/log" 2>&1; then
         failed=$((failed + 1))
         echo "  FAIL $target, $compiler $optimisation, $real: does not build: $(grep -m 1 error "$directory/log")"
         return

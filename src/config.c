@@ -4,6 +4,14 @@
 #include <float.h>
 #include <string.h>
 
+#include "workers.h"
+
+#ifdef AST_NO_THREADS
+enum { THREADS_MOST = 1 };
+#else
+enum { THREADS_MOST = AST_MAX_THREADS };
+#endif
+
 static const char *const normalisation_names[] = {"none", "mean", "unit", NULL};
 static const char *const basis_names[] = {"centred", "raw", NULL};
 static const char *const model_names[] = {"affine", "linear", NULL};
@@ -60,6 +68,7 @@ static const ast_config_field fields[] = {
     REAL(score_uncertain, 0.0f, 1.0f),
     REAL(score_lost, 0.0f, 1.0f),
     INT(lost_after, 1, 10000),
+    INT(threads, 1, THREADS_MOST),
     {"seed", NULL, OFFSET(seed), AST_FIELD_SEED, 0.0f, FLT_MAX},
 };
 enum { FIELD_COUNT = sizeof fields / sizeof fields[0] };
@@ -111,6 +120,7 @@ static const ast_config paper = {
     .score_uncertain = 0.5f,
     .score_lost = 0.3f,
     .lost_after = 3,
+    .threads = 1,
     .seed = 1,
 };
 
@@ -156,6 +166,7 @@ static const ast_config robust = {
     .score_uncertain = 0.5f,
     .score_lost = 0.3f,
     .lost_after = 2,
+    .threads = 1,
     .seed = 1,
 };
 

@@ -2,9 +2,24 @@
 
 #include <stddef.h>
 
-#include "real.h"
+#include "kernels.h"
+
+enum { BLOCK = 64 };
+
+/* A block of likelihoods for model j, from particle `first` on. Differences to the least: the nearest particle's likelihood is 1, so that
+ * sums neither under- nor overflow. Returns how many they are. */
+static int likelihoods(const struct ast_kernels *kernels, const float *distance, int first, int count, int models, int j,
+                       float least, ast_real rate, ast_real *likelihood) {
+    const int used = count - first < BLOCK ? count - first : BLOCK;
+    for (int i = 0; i < used; i++)
+        likelihood[i] = -((ast_real)distance[(size_t)(first + i) * (size_t)models + (size_t)j] - (ast_real)least) * rate;
+    kernels->exponentials(likelihood, used);
+    return used;
+}
 
 int ast_decide(const float *distance, int count, int models, const ast_config *cfg, float *weight) {
+    const struct ast_kernels *kernels = ast_kernels();
+    ast_real likelihood[BLOCK];
     for (int i = 0; i < count; i++) weight[i] = 0.0f;
     for (int j = 0; j < models; j++) {
         float least = distance[j];
@@ -17,14 +32,16 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
         ast_real scale = (ast_real)cfg->sigma;
         if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= mean - (ast_real)least;
         const ast_real rate = scale > (ast_real)FLT_MIN ? 1 / scale : 0; /* all particles alike: all likelihoods too */
-        /* Differences to the least: the nearest particle's likelihood is 1, so the sum neither under- nor overflows. */
         ast_real sum = 0;
-        for (int i = 0; i < count; i++)
-            sum += ast_exp(-((ast_real)distance[(size_t)i * (size_t)models + (size_t)j] - (ast_real)least) * rate);
+        for (int first = 0; first < count; first += BLOCK) {
+            const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
+            for (int i = 0; i < used; i++) sum += likelihood[i];
+        }
         const ast_real share = 1 / (sum * (ast_real)models);
-        for (int i = 0; i < count; i++)
-            weight[i] +=
-                (float)(share * ast_exp(-((ast_real)distance[(size_t)i * (size_t)models + (size_t)j] - (ast_real)least) * rate));
+        for (int first = 0; first < count; first += BLOCK) {
+            const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
+            for (int i = 0; i < used; i++) weight[first + i] += (float)(share * likelihood[i]);
+        }
     }
     int best = 0;
     for (int i = 1; i < count; i++)

@@ -14,6 +14,7 @@ const char *ast_strerror(int code) {
     case AST_E_ARENA: return "the memory block is smaller than ast_mem_size";
     case AST_E_OUT_OF_MEMORY: return "out of memory";
     case AST_E_NO_HEAP: return "this build has no heap: give ast_init a memory block";
+    case AST_E_THREAD: return "the threads of the configuration cannot be started";
     case AST_E_FRAME: return "the frame has no pixels, an illegal size, or a stride below its width";
     case AST_E_BOX: return "the box is not finite, has a side below one pixel, or lies outside the frame";
     case AST_E_NOT_STARTED: return "the tracker has not been started";

@@ -4,9 +4,11 @@
 struct part {
     int (*length)(const ast_config *cfg); /* 0: not in this configuration */
     float (*weight)(const ast_config *cfg);
-    void (*layout)(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena);
-    void (*prepare)(struct ast_features *f, const ast_frame *image, float object_width, float object_height); /* NULL: nothing */
-    void (*vector)(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out);
+    void (*layout)(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena); /* NULL: nothing, as the next two */
+    void (*scratch_layout)(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena);
+    void (*prepare)(struct ast_features *f, const ast_frame *image, float object_width, float object_height);
+    void (*vector)(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image, const ast_box *window,
+                   float *out);
 };
 
 static int patch_length(const ast_config *cfg) {
@@ -15,11 +17,13 @@ static int patch_length(const ast_config *cfg) {
 static float patch_weight(const ast_config *cfg) {
     return cfg->patch_weight;
 }
-static void patch_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
-    ast_sampler_layout(&f->patch, cfg, arena);
+static void patch_scratch_layout(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena) {
+    ast_sampler_layout(&own->patch, cfg, arena);
 }
-static void patch_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out) {
-    ast_sampler_patch(&f->patch, image, window, out);
+static void patch_vector(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
+                         const ast_box *window, float *out) {
+    (void)f;
+    ast_sampler_patch(&own->patch, image, window, out);
 }
 
 static int gradient_length(const ast_config *cfg) {
@@ -34,14 +38,16 @@ static void gradient_layout(struct ast_features *f, const ast_config *cfg, struc
 static void gradient_prepare(struct ast_features *f, const ast_frame *image, float object_width, float object_height) {
     ast_gradient_prepare(&f->gradient, image, object_width, object_height);
 }
-static void gradient_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *out) {
+static void gradient_vector(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
+                            const ast_box *window, float *out) {
+    (void)own;
     (void)image;
     ast_gradient_cells(&f->gradient, window, out);
 }
 
 static const struct part parts[] = {
-    {patch_length, patch_weight, patch_layout, NULL, patch_vector},
-    {gradient_length, gradient_weight, gradient_layout, gradient_prepare, gradient_vector},
+    {patch_length, patch_weight, NULL, patch_scratch_layout, NULL, patch_vector},
+    {gradient_length, gradient_weight, gradient_layout, NULL, gradient_prepare, gradient_vector},
 };
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
@@ -54,7 +60,12 @@ int ast_features_length(const ast_config *cfg) {
 void ast_features_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
     f->cfg = *cfg;
     for (int p = 0; p < PARTS; p++)
-        if (parts[p].length(cfg) > 0) parts[p].layout(f, cfg, arena);
+        if (parts[p].length(cfg) > 0 && parts[p].layout != NULL) parts[p].layout(f, cfg, arena);
+}
+
+void ast_features_scratch_layout(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena) {
+    for (int p = 0; p < PARTS; p++)
+        if (parts[p].length(cfg) > 0 && parts[p].scratch_layout != NULL) parts[p].scratch_layout(own, cfg, arena);
 }
 
 void ast_features_prepare(struct ast_features *f, const ast_frame *image, float object_width, float object_height) {
@@ -62,11 +73,12 @@ void ast_features_prepare(struct ast_features *f, const ast_frame *image, float 
         if (parts[p].length(&f->cfg) > 0 && parts[p].prepare != NULL) parts[p].prepare(f, image, object_width, object_height);
 }
 
-void ast_features_vector(struct ast_features *f, const ast_frame *image, const ast_box *window, float *vector) {
+void ast_features_vector(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
+                         const ast_box *window, float *vector) {
     for (int p = 0; p < PARTS; p++) {
         const int length = parts[p].length(&f->cfg);
         if (length == 0) continue;
-        parts[p].vector(f, image, window, vector);
+        parts[p].vector(f, own, image, window, vector);
         const float weight = parts[p].weight(&f->cfg);
         if (weight != 1.0f)
             for (int i = 0; i < length; i++) vector[i] *= weight;

@@ -17,7 +17,7 @@ struct ast_gradient {
     int width, height; /* of the current maps */
     uint8_t *maps;     /* AST_DIRECTIONS interleaved a pixel, in steps that keep the blurred responses' precision in a byte */
     float *energy;     /* squared gradient, then its local mean: one float a pixel, in the maps' memory while they are made */
-    float *row;        /* one row of maps before and while it is blurred: twice AST_DIRECTIONS floats a pixel */
+    float *row;        /* what is made of a row on its way to the maps: twice AST_DIRECTIONS floats a pixel */
 };
 
 static inline int ast_gradient_edge(int i, int count) {

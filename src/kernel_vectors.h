@@ -23,15 +23,25 @@ enum { WIDTH = AST_VECTOR_BYTES / (int)sizeof(float) };
 /* Four times four numbers, transposed: element i of a, b, c and d to out + i * step. */
 AST_ALWAYS_INLINE void transpose_four(const float *a, const float *b, const float *c, const float *d, float *out, size_t step) {
     const four x = *(const four *)a, y = *(const four *)b, z = *(const four *)c, w = *(const four *)d;
+#if defined(__clang__) || __GNUC__ >= 12
+    const four low_x = __builtin_shufflevector(x, z, 0, 4, 1, 5), low_y = __builtin_shufflevector(y, w, 0, 4, 1, 5);
+    const four high_x = __builtin_shufflevector(x, z, 2, 6, 3, 7), high_y = __builtin_shufflevector(y, w, 2, 6, 3, 7);
+    *(four *)out = __builtin_shufflevector(low_x, low_y, 0, 4, 1, 5);
+    *(four *)(out + step) = __builtin_shufflevector(low_x, low_y, 2, 6, 3, 7);
+    *(four *)(out + 2 * step) = __builtin_shufflevector(high_x, high_y, 0, 4, 1, 5);
+    *(four *)(out + 3 * step) = __builtin_shufflevector(high_x, high_y, 2, 6, 3, 7);
+#else
     *(four *)out = (four){x[0], y[0], z[0], w[0]};
     *(four *)(out + step) = (four){x[1], y[1], z[1], w[1]};
     *(four *)(out + 2 * step) = (four){x[2], y[2], z[2], w[2]};
     *(four *)(out + 3 * step) = (four){x[3], y[3], z[3], w[3]};
+#endif
 }
 #endif
 
 #if AST_HAS_VECTORS
-/* Bytes become numbers twice as wide in each step, which is what processors have instructions for. Passed by address: how vectors wider
+/* Bytes become numbers twice as wide in each step, which is what processors have instructions for; where one does it at once and the
+ * compiler does not see it, the file that includes this names it (AST_EIGHT_NUMBERS, AST_SIXTEEN_NUMBERS). Passed by address: how vectors wider
  * than the processor's are returned differs from one to the next. */
 typedef uint8_t eight_bytes __attribute__((vector_size(8), aligned(1), may_alias));
 typedef uint16_t eight_halves __attribute__((vector_size(16)));
@@ -41,12 +51,23 @@ typedef uint8_t sixteen_bytes __attribute__((vector_size(16), aligned(1), may_al
 typedef uint16_t sixteen_halves __attribute__((vector_size(32)));
 typedef int32_t sixteen_words __attribute__((vector_size(64)));
 typedef float sixteen __attribute__((vector_size(64), aligned(4), may_alias));
+#ifdef AST_EIGHT_NUMBERS
+#define EIGHT_NUMBERS(bytes) ((eight)AST_EIGHT_NUMBERS(bytes))
+#else
 #define EIGHT_NUMBERS(bytes)                                                                                                       \
     __builtin_convertvector(                                                                                                       \
         __builtin_convertvector(__builtin_convertvector(*(const eight_bytes *)(bytes), eight_halves), eight_words), eight)
+#endif
+typedef uint32_t sixteen_counts __attribute__((vector_size(64), aligned(4), may_alias));
+#define SIXTEEN_COUNTS(bytes)                                                                                                      \
+    __builtin_convertvector(__builtin_convertvector(*(const sixteen_bytes *)(bytes), sixteen_halves), sixteen_counts)
+#ifdef AST_SIXTEEN_NUMBERS
+#define SIXTEEN_NUMBERS(bytes) ((sixteen)AST_SIXTEEN_NUMBERS(bytes))
+#else
 #define SIXTEEN_NUMBERS(bytes)                                                                                                     \
     __builtin_convertvector(                                                                                                       \
         __builtin_convertvector(__builtin_convertvector(*(const sixteen_bytes *)(bytes), sixteen_halves), sixteen_words), sixteen)
+#endif
 #endif
 
 #endif

@@ -56,6 +56,8 @@ struct ast_kernels {
 
     /* x'y, in a fixed order: ast_dot. */
     ast_real (*dot)(const float *x, const float *y, int n);
+    /* x[i] = e^x[i], for those whose result is a number. */
+    void (*exponentials)(ast_real *x, int n);
     /* vector -= origin; the squared length of what is left. */
     ast_real (*depart)(float *vector, const float *origin, int n);
     /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
@@ -74,6 +76,8 @@ struct ast_kernels {
     /* A patch from 0 .. 255 to its normalised form (AST_NORMALISE_*). */
     void (*normalise)(float *patch, int length, int normalisation);
 
+    /* The maps of an image, for cells of about this size in it. */
+    void (*maps)(struct ast_gradient *g, const ast_frame *image, float cell_x, float cell_y);
     /* The cells of a window of the image whose maps g holds. */
     void (*cells)(const struct ast_gradient *g, const ast_box *window, float *out);
 

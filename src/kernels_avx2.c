@@ -7,6 +7,8 @@
 #else
 #pragma GCC target("avx2")
 #endif
+#include <immintrin.h>
+#define AST_EIGHT_NUMBERS(bytes) _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(bytes))))
 #define AST_KERNELS ast_kernels_avx2
 #define AST_KERNELS_NAME "AVX2"
 #define AST_VECTOR_BYTES 32

@@ -7,6 +7,9 @@
 #else
 #pragma GCC target("avx512f,avx512bw,avx512vl,prefer-vector-width=512")
 #endif
+#include <immintrin.h>
+#define AST_EIGHT_NUMBERS(bytes) _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(bytes))))
+#define AST_SIXTEEN_NUMBERS(bytes) _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)(bytes))))
 #define AST_KERNELS ast_kernels_avx512
 #define AST_KERNELS_NAME "AVX-512"
 #define AST_VECTOR_BYTES 64

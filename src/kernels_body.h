@@ -6,6 +6,8 @@
 
 #include "vector_kernel.h"
 
+#include "decision_kernel.h"
+
 #include "eigen_kernel.h"
 
 #include "resample_kernel.h"
@@ -21,6 +23,7 @@ const struct ast_kernels AST_KERNELS = {
     .pack = pack,
     .panel_product = panel_product,
     .dot = dot,
+    .exponentials = exponentials,
     .depart = depart,
     .solve = solve,
     .eigen = eigen,
@@ -28,6 +31,7 @@ const struct ast_kernels AST_KERNELS = {
     .axis = axis,
     .rows = rows,
     .normalise = normalise,
+    .maps = maps,
     .cells = cells,
     .project = project,
     .decompose = decompose,

@@ -101,27 +101,10 @@ float ast_acosf(float x) {
 
 #if AST_REAL_IS_DOUBLE
 
-static double power_of_two_double(int k) {
-    const uint64_t bits = (uint64_t)(k + 1023) << 52;
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 double ast_exp_double(double x) {
     if (x != x) return x;
-    if (x < -708.39641853226408) return 0.0;
     if (x > 709.78271289338397) return HUGE_VAL;
-    const int k = (int)(x * 1.4426950408889634 + (x < 0.0 ? -0.5 : 0.5));
-    const double r = (x - (double)k * 0.6931471805598903) - (double)k * 5.497923018708371e-14;
-    const double high =
-        2.480149249563551e-05 + r * (2.7557572329198064e-06 + r * (2.7630438957528254e-07 + r * 2.5004469482619634e-08));
-    const double tail =
-        0.5000000000000011 +
-        r * (0.16666666666666424 +
-             r * (0.04166666666652707 +
-                  r * (0.008333333333487052 + r * (0.0013888888944304325 + r * (0.00019841269522449025 + r * high)))));
-    return (1.0 + (r + r * r * tail)) * power_of_two_double(k / 2) * power_of_two_double(k - k / 2);
+    return ast_exp_lane(x);
 }
 
 double ast_cos_double(double x) {

@@ -3,6 +3,9 @@
 #ifndef AST_MATHS_LANES_H
 #define AST_MATHS_LANES_H
 
+#include <stdint.h>
+#include <string.h>
+
 #include "maths.h"
 #include "real.h"
 
@@ -30,6 +33,29 @@ static inline double ast_acos_lane(double x) {
     return inside <= 0.5 ? near_zero : beside;
 }
 
+/* 2^k for -1022 <= k <= 1023. */
+static inline double ast_power_of_two_lane(int k) {
+    const uint64_t bits = (uint64_t)(k + 1023) << 52;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* e^x where the result is a number; 0 for what is none. */
+static inline double ast_exp_lane(double x) {
+    const double least = -708.39641853226408, inside = x >= least ? x : least, counts = x >= least ? 1.0 : 0.0;
+    const int k = (int)(inside * 1.4426950408889634 + (inside < 0.0 ? -0.5 : 0.5));
+    const double r = (inside - (double)k * 0.6931471805598903) - (double)k * 5.497923018708371e-14;
+    const double high =
+        2.480149249563551e-05 + r * (2.7557572329198064e-06 + r * (2.7630438957528254e-07 + r * 2.5004469482619634e-08));
+    const double tail =
+        0.5000000000000011 +
+        r * (0.16666666666666424 +
+             r * (0.04166666666652707 +
+                  r * (0.008333333333487052 + r * (0.0013888888944304325 + r * (0.00019841269522449025 + r * high)))));
+    return (1.0 + (r + r * r * tail)) * ast_power_of_two_lane(k / 2) * ast_power_of_two_lane(k - k / 2) * counts;
+}
+
 static inline double ast_cos_lane(double x) {
     const double z = x * x;
     const double high = 2.0876730385966157e-09 + z * (-1.1468399389901768e-11 + z * 4.679279490419081e-14);
@@ -42,6 +68,9 @@ static inline double ast_cos_lane(double x) {
 
 static inline float ast_acos_lane(float x) {
     return ast_acosf(x);
+}
+static inline float ast_exp_lane(float x) {
+    return ast_expf(x);
 }
 static inline float ast_cos_lane(float x) {
     return ast_cosf(x);

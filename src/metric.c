@@ -14,7 +14,6 @@ void ast_metric_layout(struct ast_metric *m, int size, float ridge, int mean, in
     if (size == 0) return;
     m->factor = ast_arena_take(arena, b * b, sizeof *m->factor);
     m->known = ast_arena_take(arena, b * (size_t)(columns - size), sizeof *m->known);
-    m->fresh = ast_arena_take(arena, b * AST_LANES, sizeof *m->fresh);
 }
 
 /* Cholesky of a positive definite matrix (row-major, lower triangle), in place; the diagonal is left inverted. */
@@ -41,7 +40,8 @@ static int behind(const struct ast_metric *m) {
     return m->mean + 1 + m->size;
 }
 
-void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld) {
+void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld,
+                        float *fresh) {
     const int b = m->size, mean = m->mean, known = known_columns(m, columns);
     const float *mean_row = gram;
     ast_real trace = 0, total = 0;
@@ -63,24 +63,25 @@ void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels,
         for (int l = 0; l < AST_LANES; l++) {
             const int k = first + (l < used ? l : 0), x = k <= mean ? k : k + b;
             for (int r = 0; r < b; r++)
-                m->fresh[(size_t)r * AST_LANES + (size_t)l] = gram[(size_t)(1 + r) * (size_t)ld + (size_t)x] - mean_row[x];
+                fresh[(size_t)r * AST_LANES + (size_t)l] = gram[(size_t)(1 + r) * (size_t)ld + (size_t)x] - mean_row[x];
         }
-        kernels->solve(m->factor, b, m->fresh);
+        kernels->solve(m->factor, b, fresh);
         for (int l = 0; l < used; l++)
             for (int r = 0; r < b; r++)
-                m->known[(size_t)(first + l) * (size_t)b + (size_t)r] = m->fresh[(size_t)r * AST_LANES + (size_t)l];
+                m->known[(size_t)(first + l) * (size_t)b + (size_t)r] = fresh[(size_t)r * AST_LANES + (size_t)l];
     }
 }
 
-void ast_metric_apply(struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square) {
+void ast_metric_apply(const struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square,
+                      float *fresh) {
     const int b = m->size, in_front = m->mean + 1;
     const float *mean = inner + (size_t)m->mean * AST_LANES, *vectors = mean + AST_LANES;
     for (int r = 0; r < b; r++)
         for (int l = 0; l < AST_LANES; l++)
-            m->fresh[(size_t)r * AST_LANES + (size_t)l] = vectors[(size_t)r * AST_LANES + (size_t)l] - mean[l];
-    kernels->solve(m->factor, b, m->fresh);
+            fresh[(size_t)r * AST_LANES + (size_t)l] = vectors[(size_t)r * AST_LANES + (size_t)l] - mean[l];
+    kernels->solve(m->factor, b, fresh);
     for (int r = 0; r < b; r++) {
-        float *t = m->fresh + (size_t)r * AST_LANES;
+        float *t = fresh + (size_t)r * AST_LANES;
         for (int l = 0; l < AST_LANES; l++) {
             square[l] -= (ast_real)t[l] * (ast_real)t[l];
             t[l] = -t[l]; /* so that the products are subtracted */
@@ -90,7 +91,7 @@ void ast_metric_apply(struct ast_metric *m, const struct ast_kernels *kernels, i
         if (square[l] < 0) square[l] = 0;
     for (int r = 0; r < b; r += AST_PANEL_DEPTH) {
         const int depth = b - r < AST_PANEL_DEPTH ? b - r : AST_PANEL_DEPTH;
-        const float *panel = m->fresh + (size_t)r * AST_LANES, *known = m->known + r;
+        const float *panel = fresh + (size_t)r * AST_LANES, *known = m->known + r;
         kernels->panel_product(panel, depth, known, (size_t)b, in_front, inner, AST_LANES);
         if (columns > behind(m))
             kernels->panel_product(panel, depth, known + (size_t)in_front * (size_t)b, (size_t)b, columns - behind(m),

@@ -19,15 +19,17 @@ struct ast_metric {
     float ridge;
     float *factor; /* L, row-major, its diagonal inverted: size x size */
     float *known;  /* t of every column but theirs: size floats a column */
-    float *fresh;  /* lanes of t: size */
 };
 
 /* size vectors at most, which follow column `mean`; columns of the product in all. */
 void ast_metric_layout(struct ast_metric *m, int size, float ridge, int mean, int columns, struct ast_arena *arena);
-/* gram: inner products of [m_b, z_1 .. z_size] with the columns, one row of ld floats each. Factorises, and finds t of the columns. */
-void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld);
+/* gram: inner products of [m_b, z_1 .. z_size] with the columns, one row of ld floats each. Factorises, and finds t of the columns.
+ * fresh: room for lanes of t, here and below. */
+void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld,
+                        float *fresh);
 /* Turns inner products with the columns (lanes) into M's, but for those with the background's vectors, and lanes of squared norms too. */
-void ast_metric_apply(struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square);
+void ast_metric_apply(const struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square,
+                      float *fresh);
 /* t of a column that is none of the background's vectors. */
 float *ast_metric_known(const struct ast_metric *m, int column);
 /* t(x)'t(y) for two of them. */

@@ -4,12 +4,19 @@
 static void normalise(float *restrict patch, int length, int normalisation) {
     enum { SUMS = 16 }; /* independent sums, so that none waits for the last one's rounding */
     ast_real sums[SUMS] = {0}, sum = 0, square = 0;
-    for (int i = 0; i < length; i++) patch[i] *= 1.0f / 255.0f;
-    if (normalisation == AST_NORMALISE_NONE) return;
     int i = 0;
-    for (; i + SUMS <= length; i += SUMS)
-        for (int l = 0; l < SUMS; l++) sums[l] += (ast_real)patch[i + l];
-    for (; i < length; i++) sums[0] += (ast_real)patch[i];
+    for (; i + SUMS <= length; i += SUMS) {
+        for (int l = 0; l < SUMS; l++) {
+            const float value = patch[i + l] * (1.0f / 255.0f);
+            patch[i + l] = value;
+            sums[l] += (ast_real)value;
+        }
+    }
+    for (; i < length; i++) {
+        patch[i] *= 1.0f / 255.0f;
+        sums[0] += (ast_real)patch[i];
+    }
+    if (normalisation == AST_NORMALISE_NONE) return;
     for (int l = 0; l < SUMS; l++) sum += sums[l];
     const float mean = (float)(sum / (ast_real)length);
     for (int l = 0; l < SUMS; l++) sums[l] = 0;

@@ -11,11 +11,12 @@
 enum { AST_TAPS = 32 };
 
 /* Rows of the grid that are made at once, source pixels of each that are summed at a time, and of them in one step of vectors. */
-enum { AST_RESAMPLER_ROWS = 4, AST_RESAMPLER_PIXELS = 256, AST_RESAMPLER_CHUNK = 16 };
+enum { AST_RESAMPLER_ROWS = AST_LANES, AST_RESAMPLER_PIXELS = 128, AST_RESAMPLER_CHUNK = 16 };
 
 /* The resampling of one axis: output i = sum over j < count[i] of weight[j * length + i] * source[first[i] + j]. */
 struct ast_axis {
     int length;
+    int taps; /* most of count; the weights between are zero */
     int32_t *first, *count;
     float *at; /* where the output's sample lies in the source */
     float *weight;

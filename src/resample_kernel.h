@@ -1,14 +1,22 @@
-/* Resampling: an axis' weights for all outputs side by side, and four rows of a grid at once, because then the second pass works on
- * four outputs side by side. */
+/* Resampling: an axis' weights for all outputs side by side, and a row of a grid in each lane, because then the second pass works on the
+ * same output of all of them side by side. */
 #include "kernel_vectors.h"
 #include "maths.h"
 #include "resample.h"
+
+#include <string.h>
 
 /* Integral of the triangle max(0, 1 - |t|) from -infinity to t. */
 static inline float triangle_integral(float t) {
     const float low = t > -1.0f ? t : -1.0f, inside = low < 1.0f ? low : 1.0f, rest = inside < 0.0f ? 1.0f + inside : 1.0f - inside;
     const float half = 0.5f * rest * rest;
     return inside < 0.0f ? half : 1.0f - half;
+}
+
+/* The greatest whole number that is not above v. */
+static inline int32_t whole_below(float v) {
+    const int32_t whole = (int32_t)v;
+    return whole - ((float)whole > v ? 1 : 0);
 }
 
 /* Samples lie at start + (i + 1/2) step - 1/2 (pixel centres at integers), linearly interpolated, averaged over a box of width
@@ -27,8 +35,8 @@ static void axis(struct ast_axis *restrict axis, float start, float extent, int 
     int taps = 1, least = 0, most = last;
     for (int i = 0; i < length; i++) {
         at[i] = start + ((float)i + 0.5f) * step - 0.5f;
-        first[i] = (int32_t)ast_floorf(at[i] - half);
-        count[i] = (int32_t)ast_floorf(at[i] + half) + 2 - first[i];
+        first[i] = whole_below(at[i] - half);
+        count[i] = whole_below(at[i] + half) + 2 - first[i];
     }
     for (int i = 0; i < length; i++) {
         const int end = first[i] + count[i] - 1;
@@ -51,6 +59,7 @@ static void axis(struct ast_axis *restrict axis, float start, float extent, int 
             }
         }
     }
+    axis->taps = taps;
     if (least >= 0 && most <= last) return;
     /* Sources are clamped to the frame: what lies outside counts for the pixel at the edge. */
     for (int i = 0; i < length; i++) {
@@ -83,20 +92,29 @@ AST_ALWAYS_INLINE void sum_chunk(const uint8_t *source, size_t stride, const flo
 #endif
 }
 
-/* Sums the source rows of four output rows over the pixels first .. first + pixels - 1, and interleaves them: line[4 (CHUNK + x) + k].
- * What lies in front of the first pixel and beyond the last has no meaning. */
-static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, const int row[AST_RESAMPLER_ROWS], int first, int pixels,
+enum { GRID_ROWS = AST_RESAMPLER_ROWS };
+
+/* Source pixels to take for output i: as many for each, since a processor foresees that, but none outside the source. */
+static inline int taps_at(const struct ast_axis *axis, int i, int source_length) {
+    const int rest = source_length - axis->first[i];
+    return axis->taps < rest ? axis->taps : rest;
+}
+
+/* Sums the source rows of `count` output rows from `row` on over the pixels first .. first + pixels - 1, and interleaves them:
+ * line[GRID_ROWS (CHUNK + x) + k]. What lies in front of the first pixel and beyond the last, and in the lanes of no row, has no meaning. */
+static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int row, int count, int first, int pixels,
                      float *restrict line) {
     const size_t length = (size_t)rows->length, stride = (size_t)frame->stride;
+    AST_LANES_ALIGNED float sum[GRID_ROWS][CHUNK];
+    for (int k = count; k % 4 != 0; k++) memset(sum[k], 0, sizeof sum[k]);
     for (int begin = 0; begin < pixels; begin += CHUNK) {
-        float sum[AST_RESAMPLER_ROWS][CHUNK];
         /* Whole chunks, the last one moved back where it would leave the frame. */
         int x = begin;
         if (first + x + CHUNK > frame->width) x = frame->width - CHUNK - first;
-        for (int k = 0; k < AST_RESAMPLER_ROWS; k++) {
-            const float *weight = rows->weight + row[k];
-            const uint8_t *source = frame->pixels + (size_t)rows->first[row[k]] * stride;
-            const int used = rows->count[row[k]];
+        for (int k = 0; k < count; k++) {
+            const float *weight = rows->weight + row + k;
+            const uint8_t *source = frame->pixels + (size_t)rows->first[row + k] * stride;
+            const int used = taps_at(rows, row + k, frame->height);
             if (frame->width >= CHUNK) {
                 sum_chunk(source + first + x, stride, weight, length, used, sum[k]);
                 continue;
@@ -107,43 +125,58 @@ static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, const 
                     sum[k][i] += (float)source[(size_t)j * stride + (size_t)(first + begin + i)] * weight[(size_t)j * length];
             }
         }
-        float *to = line + (CHUNK + (frame->width >= CHUNK ? x : begin)) * AST_RESAMPLER_ROWS;
+        float *to = line + (CHUNK + (frame->width >= CHUNK ? x : begin)) * GRID_ROWS;
 #if AST_HAS_VECTORS
-        for (int i = 0; i < CHUNK; i += 4)
-            transpose_four(sum[0] + i, sum[1] + i, sum[2] + i, sum[3] + i, to + i * AST_RESAMPLER_ROWS, AST_RESAMPLER_ROWS);
+        for (int k = 0; k < count; k += 4)
+            for (int i = 0; i < CHUNK; i += 4)
+                transpose_four(sum[k] + i, sum[k + 1] + i, sum[k + 2] + i, sum[k + 3] + i, to + i * GRID_ROWS + k, GRID_ROWS);
 #else
         for (int i = 0; i < CHUNK; i++)
-            for (int k = 0; k < AST_RESAMPLER_ROWS; k++) to[i * AST_RESAMPLER_ROWS + k] = sum[k][i];
+            for (int k = 0; k < count; k++) to[i * GRID_ROWS + k] = sum[k][i];
 #endif
     }
+}
+
+/* One output of all rows. source: its first pixel in the line. */
+AST_ALWAYS_INLINE void sum_columns(const float *restrict source, const float *restrict weight, size_t step, int used,
+                                   float *restrict out) {
+#if AST_HAS_VECTORS && AST_LANES == 16
+    sixteen sum = {0};
+    for (int j = 0; j < used; j++) sum += *(const sixteen *)(source + j * GRID_ROWS) * weight[(size_t)j * step];
+    *(sixteen *)out = sum;
+#else
+    for (int k = 0; k < GRID_ROWS; k++) out[k] = 0.0f;
+    for (int j = 0; j < used; j++)
+        for (int k = 0; k < GRID_ROWS; k++) out[k] += source[j * GRID_ROWS + k] * weight[(size_t)j * step];
+#endif
 }
 
 static void rows(const struct ast_axis *columns, const struct ast_axis *rows, const ast_frame *frame, int first_row, int count,
                  float *restrict line, float *restrict out, size_t ld) {
     const int length = columns->length;
-    int row[AST_RESAMPLER_ROWS];
-    for (int k = 0; k < AST_RESAMPLER_ROWS; k++) row[k] = first_row + (k < count ? k : 0);
     for (int c = 0, next; c < length; c = next) {
         /* As many outputs as a line holds the pixels of. */
         const int first = columns->first[c];
-        int end = first + columns->count[c];
-        for (next = c + 1; next < length && columns->first[next] + columns->count[next] - first <= AST_RESAMPLER_PIXELS; next++)
-            end = columns->first[next] + columns->count[next];
-        sum_rows(rows, frame, row, first, end - first, line);
-        for (int i = c; i < next; i++) {
-            const float *source = line + (CHUNK + columns->first[i] - first) * AST_RESAMPLER_ROWS, *weight = columns->weight + i;
-            float sum[AST_RESAMPLER_ROWS] = {0};
+        int end = first + taps_at(columns, c, frame->width);
+        for (next = c + 1; next < length; next++) {
+            const int behind = columns->first[next] + taps_at(columns, next, frame->width);
+            if (behind - first > AST_RESAMPLER_PIXELS) break;
+            end = behind;
+        }
+        sum_rows(rows, frame, first_row, count, first, end - first, line);
+        for (int i = c; i < next; i += 4) {
+            const int used = next - i < 4 ? next - i : 4;
+            AST_LANES_ALIGNED float sum[4][GRID_ROWS];
+            for (int q = 0; q < used; q++)
+                sum_columns(line + (CHUNK + columns->first[i + q] - first) * GRID_ROWS, columns->weight + i + q, (size_t)length,
+                            taps_at(columns, i + q, frame->width), sum[q]);
+            int k = 0;
 #if AST_HAS_VECTORS
-            four sums = {0};
-            for (int j = 0; j < columns->count[i]; j++)
-                sums += *(const four *)(source + j * AST_RESAMPLER_ROWS) * weight[(size_t)j * (size_t)length];
-            *(four *)sum = sums;
-#else
-            for (int j = 0; j < columns->count[i]; j++)
-                for (int k = 0; k < AST_RESAMPLER_ROWS; k++)
-                    sum[k] += source[j * AST_RESAMPLER_ROWS + k] * weight[(size_t)j * (size_t)length];
+            for (; used == 4 && k + 4 <= count; k += 4)
+                transpose_four(sum[0] + k, sum[1] + k, sum[2] + k, sum[3] + k, out + (size_t)k * ld + i, ld);
 #endif
-            for (int k = 0; k < count; k++) out[(size_t)k * ld + (size_t)i] = sum[k];
+            for (; k < count; k++)
+                for (int q = 0; q < used; q++) out[(size_t)k * ld + (size_t)(i + q)] = sum[q][k];
         }
     }
 }

@@ -27,11 +27,13 @@ struct ast_scene {
     size_t work_count;
 };
 
-/* Scratch of the literal scoring. */
+/* Scratch of the literal scoring: of a frame, and of a tile. */
 struct ast_literal {
     int dim;
-    ast_real *values; /* singular values of a set: P + 1 */
     ast_real *models; /* the bag's bases in ast_real: dim x (k n) */
+};
+struct ast_literal_tile {
+    ast_real *values; /* singular values of a set: P + 1 */
     ast_real *cross;  /* U_i'U_j: n x n */
     ast_real *small;  /* workspace for its decomposition */
     size_t small_count;
@@ -68,6 +70,7 @@ struct ast_gram_tile {
     ast_real *cross;      /* U_i'U_j: n x n */
     ast_real *small;      /* its Gram matrix: n x n */
     ast_real *spare;      /* for its eigenvalues: n + 1 */
+    float *fresh;         /* what the metric takes away: background; NULL in the identity */
 };
 
 /* Scratch of the Gram scoring. r <= P is the rank of the history; column l of the lead is its basis vector Q_l. */
@@ -93,24 +96,31 @@ struct ast_gram {
     struct ast_metric metric;
     float *shared; /* inner products of [reference Q] with the bag's columns: (P + 1) x columns, row-major */
     float *kept;   /* the same of the background's mean and vectors, kept from frame to frame: (1 + background) x columns */
-    struct ast_gram_tile tile;
 };
 
+/* Of a frame: written while it is prepared, then read by all tiles. */
 union ast_scratch {
     struct ast_gram gram;
     struct ast_literal literal;
+};
+/* Of a tile: tiles that are scored at the same time have one each. */
+union ast_tile_scratch {
+    struct ast_gram_tile gram;
+    struct ast_literal_tile literal;
 };
 
 struct ast_scoring {
     /* Columns that it wants in front of the bag's. */
     int (*lead)(const ast_config *cfg);
     /* Takes its scratch from the arena. */
-    void (*layout)(union ast_scratch *scratch, const ast_config *cfg, const struct ast_linalg *la, int dim,
-                   struct ast_arena *arena);
+    void (*layout)(union ast_scratch *scratch, const ast_config *cfg, int dim, struct ast_arena *arena);
+    void (*tile_layout)(union ast_tile_scratch *own, const ast_config *cfg, const struct ast_linalg *la, int dim,
+                        struct ast_arena *arena);
     /* Once a frame, then for each tile. 0, or the backend's failure. */
-    int (*prepare)(union ast_scratch *scratch, const struct ast_scene *scene);
+    int (*prepare)(union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene);
     /* patches: count <= AST_TILE columns of the bag's stride, destroyed. distance: count x bag->count, row-major. */
-    int (*tile)(union ast_scratch *scratch, const struct ast_scene *scene, float *patches, int count, float *distance);
+    int (*tile)(const union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene, float *patches,
+                int count, float *distance);
 };
 
 extern const struct ast_scoring ast_scoring_gram;

@@ -40,8 +40,16 @@ static int lead(const ast_config *cfg) {
     return background_mean(cfg) + (cfg->background > 0 ? 1 + cfg->background : 0);
 }
 
-static void tile_layout(struct ast_gram_tile *t, const ast_config *cfg, size_t columns, struct ast_arena *arena) {
-    const size_t p = (size_t)cfg->history, m = p + 1, n = (size_t)cfg->basis_size;
+static size_t columns_at_most(const ast_config *cfg) {
+    return (size_t)lead(cfg) + (size_t)cfg->bag_size * ((size_t)cfg->basis_size + 1);
+}
+
+static void tile_layout(union ast_tile_scratch *own, const ast_config *cfg, const struct ast_linalg *la, int dim,
+                        struct ast_arena *arena) {
+    struct ast_gram_tile *t = &own->gram;
+    const size_t p = (size_t)cfg->history, m = p + 1, n = (size_t)cfg->basis_size, columns = columns_at_most(cfg);
+    (void)la;
+    (void)dim;
     t->inner = ast_arena_take(arena, columns * AST_LANES, sizeof *t->inner);
     t->beside_buffer = cfg->background > 0 ? NULL : ast_arena_take(arena, columns * AST_LANES, sizeof *t->beside_buffer);
     t->square = ast_arena_take(arena, AST_LANES, sizeof *t->square);
@@ -59,16 +67,15 @@ static void tile_layout(struct ast_gram_tile *t, const ast_config *cfg, size_t c
     t->cross = ast_arena_take(arena, n * n * AST_LANES, sizeof *t->cross);
     t->small = ast_arena_take(arena, n * n * AST_LANES, sizeof *t->small);
     t->spare = ast_arena_take(arena, (n + 1) * AST_LANES, sizeof *t->spare);
+    t->fresh = cfg->background > 0 ? ast_arena_take(arena, (size_t)cfg->background * AST_LANES, sizeof *t->fresh) : NULL;
 }
 
-static void layout(union ast_scratch *scratch, const ast_config *cfg, const struct ast_linalg *la, int dim,
-                   struct ast_arena *arena) {
+static void layout(union ast_scratch *scratch, const ast_config *cfg, int dim, struct ast_arena *arena) {
     struct ast_gram *s = &scratch->gram;
-    (void)la;
     const size_t p = (size_t)cfg->history, n = (size_t)cfg->basis_size, k = (size_t)cfg->bag_size;
     s->dim = dim;
     s->size = cfg->basis_size;
-    s->columns = (size_t)lead(cfg) + k * (n + 1);
+    s->columns = columns_at_most(cfg);
     s->spectrum = ast_arena_take(arena, p, sizeof *s->spectrum);
     s->offset = ast_arena_take(arena, p, sizeof *s->offset);
     s->matrix = ast_arena_take(arena, p * p, sizeof *s->matrix);
@@ -80,7 +87,6 @@ static void layout(union ast_scratch *scratch, const ast_config *cfg, const stru
     ast_metric_layout(&s->metric, cfg->background, cfg->ridge, background_mean(cfg), (int)s->columns, arena);
     s->shared = ast_arena_take(arena, s->columns * (p + 1), sizeof *s->shared);
     if (cfg->background > 0) s->kept = ast_arena_take(arena, s->columns * (1 + (size_t)cfg->background), sizeof *s->kept);
-    tile_layout(&s->tile, cfg, s->columns, arena);
 }
 
 static const float *lead_column(const struct ast_bag *bag, int column) {
@@ -212,7 +218,7 @@ static void keep_products(struct ast_gram *s, const struct ast_scene *scene, int
 /* Inner products of reference and Q, which change every frame, with all columns; and those of the background with all columns, where
  * one of the two was changed. By the library's own product whatever the backend, whose bits do not depend on what else is computed with
  * it: a restored tracker, which computes all anew, finds the same. */
-static void update_products(struct ast_gram *s, const struct ast_scene *scene, int columns) {
+static void update_products(struct ast_gram *s, struct ast_gram_tile *t, const struct ast_scene *scene, int columns) {
     struct ast_bag *bag = scene->bag;
     const int always = background_mean(scene->cfg);
     int column[AST_TILE], waiting = 0;
@@ -221,15 +227,16 @@ static void update_products(struct ast_gram *s, const struct ast_scene *scene, i
         if (waiting < AST_TILE && x + 1 < columns) continue;
         for (int l = 0; l < waiting; l++)
             memcpy(scene->spare + (size_t)l * (size_t)bag->stride, lead_column(bag, column[l]), (size_t)s->dim * sizeof(float));
-        ast_product(waiting, columns, s->dim, scene->spare, bag->stride, bag->columns, bag->stride, s->tile.inner, AST_LANES);
-        for (int l = 0; l < waiting; l++) keep_products(s, scene, column[l], columns, s->tile.inner, l);
+        ast_product(waiting, columns, s->dim, scene->spare, bag->stride, bag->columns, bag->stride, t->inner, AST_LANES);
+        for (int l = 0; l < waiting; l++) keep_products(s, scene, column[l], columns, t->inner, l);
         waiting = 0;
     }
     memset(bag->changed, 0, (size_t)columns);
 }
 
-static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
+static int prepare(union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene) {
     struct ast_gram *s = &scratch->gram;
+    struct ast_gram_tile *t = &own->gram;
     struct ast_bag *bag = scene->bag;
     const int columns = ast_bag_columns(bag), mean = background_mean(scene->cfg), n = bag->n, p = scene->history->count;
     const size_t ld = s->columns;
@@ -239,11 +246,11 @@ static int prepare(union ast_scratch *scratch, const struct ast_scene *scene) {
     s->share = 1 / (ast_real)(p + 1);
     s->gamma = scene->cfg->basis == AST_BASIS_CENTRED ? (ast_real)p / (ast_real)(p + 1) : 1;
     s->alpha = scene->cfg->model == AST_MODEL_LINEAR ? -1 : (ast_real)scene->cfg->alpha;
-    update_products(s, scene, columns);
+    update_products(s, t, scene, columns);
 
     const int adapted = scene->background > 0;
     if (adapted) {
-        ast_metric_prepare(&s->metric, scene->kernels, s->kept, columns, (int)ld);
+        ast_metric_prepare(&s->metric, scene->kernels, s->kept, columns, (int)ld, t->fresh);
         adapt_history(s, scene, columns);
         for (int row = 0; row < Q_FIRST + s->rank; row++)
             for (int x = 0; x < columns; x = x == mean ? bag->lead : x + 1)
@@ -329,10 +336,11 @@ static void meet_background(const struct ast_gram *s, const struct ast_scene *sc
     }
 }
 
-static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float *patches, int count, float *distance) {
+static int tile(const union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene, float *patches,
+                int count, float *distance) {
     const struct ast_kernels *kernels = scene->kernels;
-    struct ast_gram *s = &scratch->gram;
-    struct ast_gram_tile *t = &s->tile;
+    const struct ast_gram *s = &scratch->gram;
+    struct ast_gram_tile *t = &own->gram;
     const struct ast_bag *bag = scene->bag;
     const int columns = ast_bag_columns(bag), n = bag->n;
     for (int i = 0; i < AST_LANES; i++) {
@@ -344,7 +352,7 @@ static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float
     const int failed =
         scene->la->product(count, columns, s->dim, patches, bag->stride, bag->columns, bag->stride, t->inner, AST_LANES);
     if (failed) return failed;
-    if (scene->background > 0) ast_metric_apply(&s->metric, scene->kernels, columns, t->inner, t->square);
+    if (scene->background > 0) ast_metric_apply(&s->metric, scene->kernels, columns, t->inner, t->square, t->fresh);
     kernels->project(s, t);
     if (scene->background > 0)
         meet_background(s, scene, t);
@@ -364,4 +372,4 @@ static int tile(union ast_scratch *scratch, const struct ast_scene *scene, float
     return 0;
 }
 
-const struct ast_scoring ast_scoring_gram = {lead, layout, prepare, tile};
+const struct ast_scoring ast_scoring_gram = {lead, layout, tile_layout, prepare, tile};

@@ -138,7 +138,7 @@ static const char magic[8] = {'A', 'S', 'T', 'S', 'T', 'A', 'T', 'E'};
 enum { HEADER = 8 + 4, CHECKSUM = 8 };
 
 /* The configuration, field by field: counted, written, or compared with the one saved (a difference is bad). How distances are
- * computed is no part of the state: their numbers are the same, so a block may move between the two ways. */
+ * computed, and by how many threads, is no part of the state: their numbers are the same, so a block may move between them. */
 static void visit_config(struct codec *c, const ast_config *cfg) {
     int32_t count;
     const ast_config_field *field = ast_config_fields(&count);
@@ -147,7 +147,7 @@ static void visit_config(struct codec *c, const ast_config *cfg) {
         uint64_t own = 0;
         uint32_t narrow = 0;
         const int bytes = field[f].kind == AST_FIELD_SEED ? 8 : 4;
-        if (field[f].offset == offsetof(ast_config, scoring)) continue;
+        if (field[f].offset == offsetof(ast_config, scoring) || field[f].offset == offsetof(ast_config, threads)) continue;
         if (bytes == 8)
             memcpy(&own, member, sizeof own);
         else

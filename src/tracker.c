@@ -21,16 +21,34 @@ static void cloud_layout(struct ast_cloud *cloud, int count, struct ast_arena *a
     cloud->weight = ast_arena_take(arena, (size_t)count, sizeof *cloud->weight);
 }
 
+/* tile: vectors. While the arena counts there is no desk, and what is handed out goes nowhere. */
+static void desk_layout(struct ast_desk *desk, const struct ast_tracker *t, size_t tile, struct ast_arena *arena) {
+    struct ast_desk counted;
+    struct ast_desk *d = desk != NULL ? desk : &counted;
+    memset(d, 0, sizeof *d);
+    ast_features_scratch_layout(&d->features, &t->cfg, arena);
+    t->scoring->tile_layout(&d->scoring, &t->cfg, t->la, t->dim, arena);
+    d->tile = ast_arena_take(arena, (size_t)t->stride * tile, sizeof *d->tile);
+    d->work = ast_arena_take(arena, t->work_count, sizeof *d->work);
+}
+
+/* Floats from one vector to the next. Vectors a power of two apart would meet in the same few lines of a cache when a product reads many
+ * of them side by side: a line more, and they do not. */
+static int stride_of(int dim) {
+    enum { LINE = AST_ALIGNMENT / sizeof(float), CROWDED = 512 };
+    const int stride = (dim + LINE - 1) / LINE * LINE;
+    return stride % CROWDED == 0 ? stride + LINE : stride;
+}
+
 /* Fills *t and hands out the arena; the caller has taken the tracker itself. Runs once to count and once to bind. */
 static void layout(struct ast_tracker *t, const ast_config *cfg, const struct ast_linalg *la, struct ast_arena *arena) {
-    enum { FLOATS = AST_ALIGNMENT / sizeof(float) };
     memset(t, 0, sizeof *t);
     memcpy(&t->cfg, cfg, sizeof t->cfg); /* with its padding */
     t->la = la;
     t->kernels = ast_kernels();
     t->scoring = ast_scoring_of(cfg);
     t->dim = ast_features_length(cfg);
-    t->stride = (t->dim + FLOATS - 1) / FLOATS * FLOATS;
+    t->stride = stride_of(t->dim);
 
     const size_t stride = (size_t)t->stride;
     cloud_layout(&t->cloud, cfg->particles, arena);
@@ -49,14 +67,16 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     cloud_layout(&t->proposal, cfg->particles, arena);
     ast_view_layout(&t->view, cfg, arena);
     ast_features_layout(&t->features, cfg, arena);
-    t->scoring->layout(&t->scoring_scratch, cfg, la, t->dim, arena);
+    t->scoring->layout(&t->scoring_scratch, cfg, t->dim, arena);
+    t->work_count = ast_subspace_work(la, t->dim, cfg->history + 1);
     const size_t given = (size_t)cfg->history + 1; /* a start keeps the patches there, and the background's mean behind them */
-    t->tile = ast_arena_take(arena, stride * (AST_TILE > given ? AST_TILE : given), sizeof *t->tile);
+    t->desk = ast_arena_take(arena, (size_t)cfg->threads, sizeof *t->desk);
+    for (int w = 0; w < cfg->threads; w++)
+        desk_layout(t->desk != NULL ? &t->desk[w] : NULL, t, w == 0 && given > AST_TILE ? given : AST_TILE, arena);
+    t->workers = ast_workers_layout(cfg->threads, arena);
     t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
     t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
     t->basis = ast_arena_take(arena, stride * (size_t)cfg->basis_size, sizeof *t->basis);
-    t->work_count = ast_subspace_work(la, t->dim, cfg->history + 1);
-    t->work = ast_arena_take(arena, t->work_count, sizeof *t->work);
 }
 
 size_t ast_mem_size_backend(const ast_config *cfg, const struct ast_linalg *la) {
@@ -96,6 +116,10 @@ int ast_init_backend(ast_tracker **out, const ast_config *cfg, const struct ast_
         ast_free(t);
         return AST_E_BACKEND;
     }
+    if (ast_workers_start(t->workers) != 0) {
+        ast_free(t);
+        return AST_E_THREAD;
+    }
     *out = t;
     return AST_OK;
 }
@@ -105,10 +129,10 @@ int ast_init(ast_tracker **out, const ast_config *cfg, void *mem, size_t mem_siz
 }
 
 void ast_free(ast_tracker *t) {
+    if (t == NULL) return;
+    ast_workers_end(t->workers);
 #ifndef AST_NO_HEAP
-    if (t != NULL) free(t->owned);
-#else
-    (void)t;
+    free(t->owned);
 #endif
 }
 
@@ -132,9 +156,13 @@ static void look(struct ast_tracker *t, const ast_frame *frame, float left, floa
 }
 
 /* The feature vector of a box, in the frame that was looked at. */
-static void describe(struct ast_tracker *t, const ast_box *box, float *vector) {
+static void describe_at(struct ast_desk *desk, const struct ast_tracker *t, const ast_box *box, float *vector) {
     const ast_box window = ast_view_box(&t->view, box);
-    ast_features_vector(&t->features, &t->view.image, &window, vector);
+    ast_features_vector(&t->features, &desk->features, &t->view.image, &window, vector);
+}
+
+static void describe(struct ast_tracker *t, const ast_box *box, float *vector) {
+    describe_at(t->desk, t, box, vector);
 }
 
 /* The mean that draw_background will give after a start: the same draws, without keeping them. mean, vector: dim. */
@@ -163,8 +191,8 @@ static void refresh_background(struct ast_tracker *t, const ast_box *object) {
     for (int i = 0; i < t->cfg.background_refresh; i++) {
         const int slot = (int)(ast_random_bits(&t->random) % (uint32_t)t->background.size);
         const ast_box box = ast_background_box(object, &t->random);
-        describe(t, &box, t->tile);
-        ast_background_replace(&t->background, slot, t->tile);
+        describe(t, &box, t->desk->tile);
+        ast_background_replace(&t->background, slot, t->desk->tile);
     }
 }
 
@@ -172,7 +200,7 @@ static void refresh_background(struct ast_tracker *t, const ast_box *object) {
 static int fit_images(struct ast_tracker *t, const struct ast_images *images, const float *background_mean, int *rank) {
     const int failed =
         ast_subspace_of(t->la, images, t->cfg.basis == AST_BASIS_CENTRED, t->background.size > 0 ? background_mean : NULL,
-                        t->cfg.basis_size, t->mean, t->basis, t->stride, rank, t->work, t->work_count);
+                        t->cfg.basis_size, t->mean, t->basis, t->stride, rank, t->desk->work, t->work_count);
     return failed ? AST_E_BACKEND : AST_OK;
 }
 
@@ -226,13 +254,14 @@ int ast_start_sequence(ast_tracker *t, const ast_frame *frames, const ast_box *b
     for (int32_t j = 0; j < used; j++) {
         const ast_box *box = &boxes[count - used + j];
         const struct ast_state state = state_of(&t->cfg, box, &boxes[0]);
-        float *patch = t->tile + (size_t)j * (size_t)t->stride;
+        float *patch = t->desk->tile + (size_t)j * (size_t)t->stride;
         look(t, &frames[count - used + j], state.x, state.y, state.x, state.y, state.scale);
         describe(t, box, patch);
         column[j] = patch;
     }
     ast_images_mean(&images, t->mean);
-    float *background_mean = t->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
+    float *background_mean =
+        t->desk->tile + (size_t)used * (size_t)t->stride; /* behind the patches, of which a tile holds one more */
     if (used == t->cfg.history) foresee_background_mean(t, &boxes[count - 1], background_mean, t->basis);
     if (used == t->cfg.history && fit_images(t, &images, background_mean, &rank) != AST_OK) {
         t->box_width = width_before;
@@ -277,32 +306,30 @@ static void distances_to_mean(struct ast_tracker *t, const float *mean, const fl
     }
 }
 
-/* Distances of all proposed particles to all models, tile by tile. */
-static int score_particles(struct ast_tracker *t, int models) {
-    const struct ast_scene scene = {&t->cfg, t->la,   t->kernels,   &t->history, &t->bag, t->background.size,
-                                    t->tile, t->work, t->work_count};
-    if (t->bag.count == 0) {
-        const float *column[AST_MAX_HISTORY];
-        const struct ast_images images = {column, t->history.count, t->dim};
-        for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
-        ast_images_mean(&images, t->mean);
-    } else if (t->scoring->prepare(&t->scoring_scratch, &scene) != 0) {
-        return AST_E_BACKEND;
+/* What the parts of scoring a frame's candidates share. */
+struct round {
+    struct ast_tracker *t;
+    const ast_frame *frame;
+    struct ast_scene scene; /* but for the work, which is at each desk */
+    int models;
+};
+
+static int score_part(void *shared, int worker, int part) {
+    const struct round *round = shared;
+    struct ast_tracker *t = round->t;
+    struct ast_desk *desk = &t->desk[worker];
+    const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
+    float *distance = t->distance + (size_t)first * (size_t)round->models;
+    struct ast_scene scene = round->scene;
+    scene.work = desk->work;
+    for (int i = 0; i < count; i++) {
+        const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
+        const ast_box window = window_of(t, &state);
+        describe_at(desk, t, &window, desk->tile + (size_t)i * (size_t)t->stride);
     }
-    for (int first = 0; first < t->proposal.count; first += AST_TILE) {
-        const int count = t->proposal.count - first < AST_TILE ? t->proposal.count - first : AST_TILE;
-        float *distance = t->distance + (size_t)first * (size_t)models;
-        for (int i = 0; i < count; i++) {
-            const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
-            const ast_box window = window_of(t, &state);
-            describe(t, &window, t->tile + (size_t)i * (size_t)t->stride);
-        }
-        if (t->bag.count == 0)
-            distances_to_mean(t, t->mean, t->tile, count, distance);
-        else if (t->scoring->tile(&t->scoring_scratch, &scene, t->tile, count, distance) != 0)
-            return AST_E_BACKEND;
-    }
-    return AST_OK;
+    if (t->bag.count > 0) return t->scoring->tile(&t->scoring_scratch, &desk->scoring, &scene, desk->tile, count, distance);
+    distances_to_mean(t, t->mean, desk->tile, count, distance);
+    return 0;
 }
 
 /* Looks at all that the proposed particles can show. */
@@ -318,6 +345,37 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
     look(t, frame, left, top, right, bottom, t->estimate.scale);
 }
 
+/* What all candidates share: the first part is the frame that they show, the second what is known without it. */
+static int prepare_part(void *shared, int worker, int part) {
+    const struct round *round = shared;
+    struct ast_tracker *t = round->t;
+    (void)worker; /* the second part alone needs a desk, and takes the first */
+    if (part == 0) {
+        look_at_cloud(t, round->frame);
+    } else if (t->bag.count > 0) {
+        return t->scoring->prepare(&t->scoring_scratch, &t->desk->scoring, &round->scene);
+    } else {
+        const float *column[AST_MAX_HISTORY];
+        const struct ast_images images = {column, t->history.count, t->dim};
+        for (int j = 0; j < images.count; j++) column[j] = ast_history_patch(&t->history, j);
+        ast_images_mean(&images, t->mean);
+    }
+    return 0;
+}
+
+/* Distances of all proposed particles to all models, tile by tile. */
+static int score_particles(struct ast_tracker *t, const ast_frame *frame, int models) {
+    struct round round = {
+        t,
+        frame,
+        {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
+        models};
+    const struct ast_task preparation = {prepare_part, &round, 2};
+    const struct ast_task tiles = {score_part, &round, (t->proposal.count + AST_TILE - 1) / AST_TILE};
+    if (ast_workers_share(t->workers, &preparation) != 0) return AST_E_BACKEND;
+    return ast_workers_share(t->workers, &tiles) != 0 ? AST_E_BACKEND : AST_OK;
+}
+
 /* The frame's candidates: the last cloud's, moved on; while the object is lost, half of them search where it was last seen. */
 static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_random *random) {
     const float size = ast_sqrtf(t->box_width * t->box_height) * t->guard.good.scale;
@@ -327,7 +385,6 @@ static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_ra
     ast_cloud_diffuse(&t->proposal, &t->cfg, frame, random);
     ast_guard_widen(&t->guard, &t->cfg, frame, size, &t->proposal);
     if (t->cfg.incumbent) ast_cloud_set(&t->proposal, 0, ast_state_within(t->estimate, &t->cfg, frame));
-    look_at_cloud(t, frame);
 }
 
 static void copy_cloud(struct ast_cloud *to, const struct ast_cloud *from) {
@@ -350,7 +407,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
 
     const int models = t->bag.count > 0 ? t->bag.count : 1;
     t->models = 0; /* until the distances are whole again */
-    error = score_particles(t, models);
+    error = score_particles(t, frame, models);
     if (error != AST_OK) return error;
     const int best = ast_decide(t->distance, t->proposal.count, models, &t->cfg, t->proposal.weight);
     const struct ast_state found = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
@@ -362,7 +419,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     }
 
     /* The winner's vector again (the tile has been reused), what it is worth, and its subspace when a model is due. */
-    float *vector = t->tile;
+    float *vector = t->desk->tile;
     describe(t, &found_box, vector);
     const struct ast_resemblance resemblance =
         ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);

@@ -13,6 +13,15 @@
 #include "random.h"
 #include "score.h"
 #include "view.h"
+#include "workers.h"
+
+/* What a worker needs for itself, to describe candidates and to score them. */
+struct ast_desk {
+    struct ast_features_scratch features;
+    union ast_tile_scratch scoring;
+    float *tile;    /* AST_TILE vectors; the first desk's: or history + 1 where that is more */
+    ast_real *work; /* for decompositions */
+};
 
 struct ast_tracker {
     ast_config cfg;
@@ -21,7 +30,7 @@ struct ast_tracker {
     const struct ast_scoring *scoring;
     void *owned; /* the block, when ast_init allocated it */
     int dim;     /* D: floats in a feature vector */
-    int stride;  /* floats from one vector to the next: D rounded up to AST_ALIGNMENT bytes */
+    int stride;  /* floats from one vector to the next: at least D, and a multiple of AST_ALIGNMENT bytes */
 
     /* State, saved by ast_save. Changed only when a call succeeds. */
     int started;
@@ -44,13 +53,13 @@ struct ast_tracker {
     struct ast_view view;
     struct ast_features features;
     union ast_scratch scoring_scratch;
-    float *tile;     /* AST_TILE vectors, or history + 1 where that is more */
-    float *distance; /* particles x models of the last step */
-    int models;      /* columns of distance; 0 before the first step */
-    float *mean;     /* of a set being fitted: dim */
-    float *basis;    /* of it: basis_size columns */
-    ast_real *work;  /* for decompositions */
-    size_t work_count;
+    struct ast_desk *desk; /* one for each worker; all but the tiles is done at the first */
+    float *distance;       /* particles x models of the last step */
+    int models;            /* columns of distance; 0 before the first step */
+    float *mean;           /* of a set being fitted: dim */
+    float *basis;          /* of it: basis_size columns */
+    size_t work_count;     /* elements of a desk's work */
+    struct ast_workers *workers;
 };
 
 /* As ast_init, with another linear-algebra backend than the build's: for tests of the seam. */

@@ -194,6 +194,7 @@ static void test_table_names_its_members(void) {
         MEMBER(score_uncertain, AST_FIELD_FLOAT),
         MEMBER(score_lost, AST_FIELD_FLOAT),
         MEMBER(lost_after, AST_FIELD_INT),
+        MEMBER(threads, AST_FIELD_INT),
         MEMBER(seed, AST_FIELD_SEED),
     };
 #undef MEMBER
@@ -284,6 +285,7 @@ static void test_limits_are_those_of_the_header(void) {
         {"score_uncertain", 0, 1},
         {"score_lost", 0, 1},
         {"lost_after", 1, 10000},
+        {"threads", 1, AST_MAX_THREADS},
     };
     int32_t count = 0, ranged = 0;
     const ast_config_field *fields = ast_config_fields(&count);

@@ -9,6 +9,7 @@
 
 #include "backend.h"
 #include "support_faulty.h"
+#include "support_few_threads.h"
 #include "support_heap.h"
 #include "support_tracker.h"
 #include "unity.h"
@@ -67,6 +68,15 @@ static int reach_out_of_memory(void) {
 static int reach_no_heap(void) {
     ast_tracker *t = NULL;
     const int code = no_heap_init(&t, &cfg, NULL, 0);
+    TEST_ASSERT_NULL(t);
+    return code;
+}
+
+static int reach_thread(void) {
+    ast_tracker *t = NULL;
+    cfg.threads = 3;
+    few_threads_left(1); /* so that the first must be ended again */
+    const int code = few_threads_init(&t, &cfg, NULL, 0);
     TEST_ASSERT_NULL(t);
     return code;
 }
@@ -135,6 +145,7 @@ static const struct {
     CODE(AST_E_ARENA, -10, reach_arena),
     CODE(AST_E_OUT_OF_MEMORY, -11, reach_out_of_memory),
     CODE(AST_E_NO_HEAP, -12, reach_no_heap),
+    CODE(AST_E_THREAD, -13, reach_thread),
     CODE(AST_E_FRAME, -20, reach_frame),
     CODE(AST_E_BOX, -21, reach_box),
     CODE(AST_E_NOT_STARTED, -22, reach_not_started),

@@ -13,6 +13,7 @@ enum { WIDTH = 110, HEIGHT = 90, MOST = AST_MAX_PATCH * AST_MAX_PATCH + AST_MAX_
 
 static unsigned char *block;
 static struct ast_features features;
+static struct ast_features_scratch scratch;
 static uint8_t pixels[WIDTH * HEIGHT];
 static const ast_frame image = {pixels, WIDTH, HEIGHT, WIDTH};
 static const ast_box window = {31.25f, 22.5f, 40, 34};
@@ -46,13 +47,16 @@ static ast_config weighted(float patch, float gradient) {
 static size_t lay_out(const ast_config *cfg) {
     struct ast_arena counted = {NULL, 0}, arena = {NULL, 0};
     memset(&features, 0, sizeof features);
+    memset(&scratch, 0, sizeof scratch);
     ast_features_layout(&features, cfg, &counted);
+    ast_features_scratch_layout(&scratch, cfg, &counted);
     free(block);
     block = malloc(counted.used + AST_ALIGNMENT);
     TEST_ASSERT_NOT_NULL(block);
     memset(block, 0xff, counted.used + AST_ALIGNMENT); /* NaN */
     arena.base = ast_align(block);
     ast_features_layout(&features, cfg, &arena);
+    ast_features_scratch_layout(&scratch, cfg, &arena);
     TEST_ASSERT_EQUAL_UINT(counted.used, arena.used);
     return arena.used;
 }
@@ -62,7 +66,7 @@ static int describe(const ast_config *cfg) {
     const int length = ast_features_length(cfg);
     for (int i = 0; i <= MOST; i++) vector[i] = NAN;
     ast_features_prepare(&features, &image, window.w, window.h);
-    ast_features_vector(&features, &image, &window, vector);
+    ast_features_vector(&features, &scratch, &image, &window, vector);
     for (int i = 0; i < length; i++) TEST_ASSERT_FALSE(isnan(vector[i]));
     for (int i = length; i <= MOST; i++) TEST_ASSERT_TRUE(isnan(vector[i]));
     return length;
@@ -99,7 +103,7 @@ static void test_vector_is_the_weighted_parts(void) {
     ast_config alone = weighted(1.0f, 0.0f);
     (void)lay_out(&alone);
     TEST_ASSERT_EQUAL_INT(256, describe(&alone));
-    ast_sampler_patch(&features.patch, &image, &window, grey);
+    ast_sampler_patch(&scratch.patch, &image, &window, grey);
     TEST_ASSERT_EQUAL_MEMORY(grey, vector, sizeof grey);
     alone = weighted(0.0f, 1.0f);
     (void)lay_out(&alone);
@@ -189,8 +193,8 @@ static void test_vectors_do_not_depend_on_those_before(void) {
     for (int trial = 0; trial < 50; trial++) {
         const ast_box elsewhere = {(float)(150 * noise_uniform(&noise) - 40), (float)(130 * noise_uniform(&noise) - 40),
                                    (float)(1 + 80 * noise_uniform(&noise)), (float)(1 + 80 * noise_uniform(&noise))};
-        ast_features_vector(&features, &image, &elsewhere, other);
-        ast_features_vector(&features, &image, &window, vector);
+        ast_features_vector(&features, &scratch, &image, &elsewhere, other);
+        ast_features_vector(&features, &scratch, &image, &window, vector);
         TEST_ASSERT_EQUAL_MEMORY(first, vector, sizeof first);
     }
 }

@@ -249,7 +249,7 @@ static void test_a_tracker_gives_the_same_bits_with_all_kernels(void) {
         TEST_ASSERT_LESS_OR_EQUAL_INT(8, count);
         for (int i = 0; i < count; i++) {
             t[i] = tracker_new(&cfg, &ast_linalg_builtin);
-            t[i]->kernels = t[i]->features.patch.resampler.kernels = t[i]->features.gradient.kernels =
+            t[i]->kernels = t[i]->desk->features.patch.resampler.kernels = t[i]->features.gradient.kernels =
                 t[i]->view.resampler.kernels = ast_kernels_at(i);
         }
         render_open(&scene, 150, 110, 4);

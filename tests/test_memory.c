@@ -149,6 +149,37 @@ static void test_nothing_is_allocated_at_the_presets_sizes(void) {
     }
 }
 
+/* A threaded BLAS starts its threads when it is loaded, and these take memory in their own time: not before all is quiet can what the
+ * library does be told from that. */
+static void wait_for_quiet(void) {
+    const struct timespec moment = {0, 10 * 1000 * 1000};
+    for (int quiet = 0; quiet < 10; quiet++) {
+        const long before = allocations();
+        (void)nanosleep(&moment, NULL);
+        if (allocations() != before) quiet = 0;
+    }
+}
+
+/* A step on several threads: the builtin backend never, OpenBLAS once more a thread, as below. */
+static void test_threaded_steps_allocate_nothing(void) {
+    for (int b = 0; b < BACKENDS; b++) {
+        long total = 0;
+        enum { SHARING = 3 };
+        for (int which = 0; which < SMALL_CONFIGS; which++) {
+            ast_config cfg = small_config_of(which);
+            cfg.patch_width = cfg.patch_height = 24;
+            cfg.threads = SHARING;
+            ast_tracker *t = tracker_new(&cfg, backends[b]);
+            wait_for_quiet(); /* a thread begins in its own time */
+            const long before = allocations();
+            TEST_ASSERT_EQUAL_INT(AST_OK, start_and_step(t, 200, NULL));
+            total += allocations() - before;
+            ast_free(t);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(total <= (backends[b] == &ast_linalg_builtin ? 0 : SHARING - 1), backends[b]->name);
+    }
+}
+
 static void test_geometry_allocates_nothing(void) {
     enum { DIM = 64, COUNT = 4, N = 3 };
     static float images[DIM * COUNT], mean[2][DIM], basis[2][DIM * N];
@@ -447,17 +478,6 @@ static void test_threads_allocate_nothing(void) {
     }
 }
 
-/* A threaded BLAS starts its threads when it is loaded, and these take memory in their own time: not before all is quiet can what the
- * library does be told from that. */
-static void wait_for_quiet(void) {
-    const struct timespec moment = {0, 10 * 1000 * 1000};
-    for (int quiet = 0; quiet < 10; quiet++) {
-        const long before = allocations();
-        (void)nanosleep(&moment, NULL);
-        if (allocations() != before) quiet = 0;
-    }
-}
-
 int main(void) {
     allocations_watch();
     render_film();
@@ -467,6 +487,7 @@ int main(void) {
     RUN_TEST(test_nothing_is_allocated_after_init);
     RUN_TEST(test_nothing_is_allocated_at_the_presets_sizes);
     RUN_TEST(test_threads_allocate_nothing);
+    RUN_TEST(test_threaded_steps_allocate_nothing);
     RUN_TEST(test_counter_sees_allocations);
     RUN_TEST(test_geometry_allocates_nothing);
     RUN_TEST(test_own_block_is_one_allocation);

@@ -21,6 +21,7 @@ struct problem {
     double *m;     /* dim x dim */
     float *gram;   /* inner products of m_b and the background with the columns: rows of `columns` floats */
     float *inner;  /* those of the tile */
+    float *fresh;
     struct ast_metric metric;
     unsigned char *block;
 };
@@ -41,9 +42,10 @@ static void open_problem(struct problem *p, int dim, int size, float ridge) {
     p->m = matrix_new(dim, dim);
     p->gram = calloc((size_t)(1 + size) * (size_t)p->columns, sizeof *p->gram);
     p->inner = calloc((size_t)AST_LANES * (size_t)p->columns, sizeof *p->inner);
+    p->fresh = malloc((size_t)AST_LANES * (size_t)size * sizeof *p->fresh);
     ast_metric_layout(&p->metric, size, ridge, LEAD, p->capacity, &counted);
     p->block = malloc(counted.used + AST_ALIGNMENT);
-    TEST_ASSERT_TRUE(p->column != NULL && p->gram != NULL && p->inner != NULL && p->block != NULL);
+    TEST_ASSERT_TRUE(p->column != NULL && p->gram != NULL && p->inner != NULL && p->fresh != NULL && p->block != NULL);
     memset(p->block, 0xff, counted.used + AST_ALIGNMENT); /* NaN */
     arena.base = ast_align(p->block);
     ast_metric_layout(&p->metric, size, ridge, LEAD, p->capacity, &arena);
@@ -55,6 +57,7 @@ static void close_problem(struct problem *p) {
     free(p->m);
     free(p->gram);
     free(p->inner);
+    free(p->fresh);
     free(p->block);
 }
 
@@ -160,7 +163,7 @@ static double in_metric(const struct problem *p, int x, int y) {
 static void prepare(struct problem *p, const struct ast_linalg *la) {
     TEST_ASSERT_EQUAL_INT(0,
                           la->product(p->columns, 1 + p->size, p->dim, p->column, p->dim, mean_of(p), p->dim, p->gram, p->columns));
-    ast_metric_prepare(&p->metric, ast_kernels(), p->gram, p->columns, p->columns);
+    ast_metric_prepare(&p->metric, ast_kernels(), p->gram, p->columns, p->columns, p->fresh);
 }
 
 /* square: count of AST_LANES. */
@@ -169,7 +172,7 @@ static void apply(struct problem *p, const struct ast_linalg *la, int count, ast
     memset(p->inner, 0, (size_t)(AST_LANES * p->columns) * sizeof *p->inner);
     TEST_ASSERT_EQUAL_INT(0, la->product(count, p->columns, p->dim, tile, p->dim, p->column, p->dim, p->inner, AST_LANES));
     for (int i = 0; i < AST_LANES; i++) square[i] = i < count ? (ast_real)ordinary(p, p->columns + i, p->columns + i) : 0;
-    ast_metric_apply(&p->metric, ast_kernels(), p->columns, p->inner, square);
+    ast_metric_apply(&p->metric, ast_kernels(), p->columns, p->inner, square, p->fresh);
 }
 
 /* The column behind x of those that the metric knows: all but the background's vectors. */

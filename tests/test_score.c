@@ -42,6 +42,7 @@ struct bench {
     struct ast_history history;
     struct ast_bag bag[WAYS]; /* the same models behind different leads */
     union ast_scratch scratch[WAYS];
+    union ast_tile_scratch tile_scratch[WAYS];
     ast_real *work;
     size_t work_count;
     float *tile, *candidates; /* candidates: as given; tile: what scoring destroys */
@@ -55,7 +56,8 @@ static void bench_layout(struct bench *b, struct ast_arena *arena) {
     for (int w = 0; w < WAYS; w++) {
         ast_bag_layout(&b->bag[w], b->dim, b->stride, scorings[w]->lead(&b->cfg), b->cfg.basis_size, b->cfg.bag_size,
                        b->cfg.keep_first, arena);
-        scorings[w]->layout(&b->scratch[w], &b->cfg, b->la, b->dim, arena);
+        scorings[w]->layout(&b->scratch[w], &b->cfg, b->dim, arena);
+        scorings[w]->tile_layout(&b->tile_scratch[w], &b->cfg, b->la, b->dim, arena);
     }
     b->work_count = ast_subspace_work(b->la, b->dim, b->cfg.history + 1);
     b->work = ast_arena_take(arena, b->work_count, sizeof *b->work);
@@ -137,12 +139,14 @@ static void score_in_tiles(struct bench *b, int way, int tile, float *distance) 
                                     .work = b->work,
                                     .work_count = b->work_count};
     const size_t column = (size_t)b->stride, models = (size_t)b->bag[way].count;
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scorings[way]->prepare(&b->scratch[way], &scene), label);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scorings[way]->prepare(&b->scratch[way], &b->tile_scratch[way], &scene), label);
     for (int first = 0; first < b->count; first += tile) {
         const int count = b->count - first < tile ? b->count - first : tile;
         memcpy(b->tile, b->candidates + (size_t)first * column, (size_t)count * column * sizeof *b->tile);
         TEST_ASSERT_EQUAL_INT_MESSAGE(
-            0, scorings[way]->tile(&b->scratch[way], &scene, b->tile, count, distance + (size_t)first * models), label);
+            0,
+            scorings[way]->tile(&b->scratch[way], &b->tile_scratch[way], &scene, b->tile, count, distance + (size_t)first * models),
+            label);
     }
 }
 

@@ -197,7 +197,7 @@ static ast_box truth(const struct render *scene, int frame) {
 static void describe(ast_tracker *t, const ast_particles *p, int i, float *vector) {
     const float w = p->reference.w * p->scale[i], h = p->reference.h * p->scale[i];
     const ast_box box = {p->x[i] - 0.5f * w, p->y[i] - 0.5f * h, w, h}, window = ast_view_box(&t->view, &box);
-    ast_features_vector(&t->features, &t->view.image, &window, vector);
+    ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
 }
 
 /* Follows the target for some frames and compares every `every`-th particle's distances. Returns the largest difference relative to
@@ -309,14 +309,14 @@ static void score(ast_tracker *t, const float *vectors, int count, float *distan
                                     .history = &t->history,
                                     .bag = &t->bag,
                                     .background = t->background.size,
-                                    .spare = t->tile,
-                                    .work = t->work,
+                                    .spare = t->desk->tile,
+                                    .work = t->desk->work,
                                     .work_count = t->work_count};
     TEST_ASSERT_LESS_OR_EQUAL_INT(AST_TILE, count);
     ast_bag_mark(&t->bag); /* the tests write where they like */
-    TEST_ASSERT_EQUAL_INT(0, t->scoring->prepare(&t->scoring_scratch, &scene));
-    memcpy(t->tile, vectors, (size_t)(count * t->stride) * sizeof *vectors);
-    TEST_ASSERT_EQUAL_INT(0, t->scoring->tile(&t->scoring_scratch, &scene, t->tile, count, distance));
+    TEST_ASSERT_EQUAL_INT(0, t->scoring->prepare(&t->scoring_scratch, &t->desk->scoring, &scene));
+    memcpy(t->desk->tile, vectors, (size_t)(count * t->stride) * sizeof *vectors);
+    TEST_ASSERT_EQUAL_INT(0, t->scoring->tile(&t->scoring_scratch, &t->desk->scoring, &scene, t->desk->tile, count, distance));
 }
 
 /* Largest difference from the definition, relative to 1 + |distance|. */

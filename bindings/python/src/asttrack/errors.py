@@ -12,6 +12,7 @@ class ErrorCode(IntEnum):
     ARENA = -10
     OUT_OF_MEMORY = -11
     NO_HEAP = -12
+    THREAD = -13
     FRAME = -20
     BOX = -21
     NOT_STARTED = -22
