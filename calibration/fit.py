@@ -30,8 +30,9 @@ from asttrack.failures import DataError
 # Of the predictors by name, in the order of the source.
 TERMS: dict[str, Callable[[Any], Floats]] = {
     "start": lambda row: row["start"],
-    "known": lambda row: row["known"],
     "-ln(spread + 0.01)": lambda row: -np.log(row["spread"] + 0.01),
+    "inside": lambda row: row["inside"],
+    "-lately": lambda row: -row["lately"],
 }
 # Scores between which a float holds their log odds well.
 LEAST, MOST = 0.001, 0.999

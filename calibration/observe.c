@@ -5,8 +5,8 @@
 
 #include "confidence.h"
 
-float __real_ast_confidence_probability(const struct ast_resemblance *resemblance, float spread);
-float __wrap_ast_confidence_probability(const struct ast_resemblance *resemblance, float spread);
+float __real_ast_confidence_probability(const struct ast_evidence *evidence);
+float __wrap_ast_confidence_probability(const struct ast_evidence *evidence);
 
 static FILE *rows;
 
@@ -21,18 +21,18 @@ __attribute__((constructor)) static void open_rows(void) {
     const char *path = getenv("AST_PREDICTORS");
     if (path == NULL) return;
     rows = fopen(path, "w");
-    require(rows != NULL && fprintf(rows, "start,known,spread,score\n") > 0, path);
+    require(rows != NULL && fprintf(rows, "start,spread,inside,lately,score\n") > 0, path);
 }
 
 __attribute__((destructor)) static void close_rows(void) {
     if (rows != NULL && fclose(rows) != 0) perror("AST_PREDICTORS");
 }
 
-float __wrap_ast_confidence_probability(const struct ast_resemblance *resemblance, float spread) {
-    const float score = __real_ast_confidence_probability(resemblance, spread);
+float __wrap_ast_confidence_probability(const struct ast_evidence *evidence) {
+    const float score = __real_ast_confidence_probability(evidence);
     if (rows != NULL)
-        require(fprintf(rows, "%.9g,%.9g,%.9g,%.9g\n", (double)resemblance->start, (double)resemblance->known, (double)spread,
-                        (double)score) > 0,
+        require(fprintf(rows, "%.9g,%.9g,%.9g,%.9g,%.9g\n", (double)evidence->start, (double)evidence->spread,
+                        (double)evidence->inside, (double)evidence->lately, (double)score) > 0,
                 "AST_PREDICTORS");
     return score;
 }

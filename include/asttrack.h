@@ -264,10 +264,9 @@ AST_API AST_CHECKED int ast_start_sequence(ast_tracker *t, const ast_frame *fram
 enum { AST_TRACKING = 0, AST_UNCERTAIN = 1, AST_LOST = 2 };
 
 typedef struct ast_result {
-    ast_box
-        box; /* the object's box, pixels; may reach beyond the frame; with AST_LOST: the likeliest place, which may be anything */
+    ast_box box;               /* the object's, pixels; may reach beyond the frame; with AST_LOST the likeliest place of all */
     float scale;               /* relative to the first box */
-    float score;               /* confidence, 0 (nothing like the object) .. 1 (as seen before) */
+    float score;               /* 0 .. 1; with a guard the probability that the box is on the object, else its likeness */
     float distance;            /* the winner's least distance to a model (paper eq. 2); can be negative with background_ratio */
     float effective_particles; /* effective sample size 1 / sum w^2, 1 .. N */
     int32_t status;            /* AST_TRACKING, AST_UNCERTAIN or AST_LOST */

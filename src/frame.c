@@ -25,6 +25,17 @@ int ast_box_check(const ast_box *box, const ast_frame *frame) {
     return AST_OK;
 }
 
+/* Length that the span from `from` of a length has in common with 0 .. side. */
+static float common(float from, float length, int32_t side) {
+    const float left = from > 0.0f ? from : 0.0f;
+    const float right = from + length < (float)side ? from + length : (float)side;
+    return right > left ? right - left : 0.0f;
+}
+
+float ast_frame_share(const ast_frame *frame, const ast_box *box) {
+    return (common(box->x, box->w, frame->width) / box->w) * (common(box->y, box->h, frame->height) / box->h);
+}
+
 /* ITU-R BT.601 luma in 16-bit fixed point; the weights sum to 65536, so that white stays 255. */
 static uint8_t luma(unsigned red, unsigned green, unsigned blue) {
     return (uint8_t)((19595u * red + 38470u * green + 7471u * blue + 32768u) >> 16);

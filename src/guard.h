@@ -24,6 +24,7 @@ struct ast_guard {
     struct ast_resemblance usual; /* running means over trusted frames; start 0 before the first */
     int32_t low;                  /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
     int32_t lost;                 /* 1: following and searching, without learning */
+    float lately;                 /* running mean of lost over about a hundred frames, 0 .. 1 */
     struct ast_state good;        /* the last trusted estimate */
 };
 
@@ -31,13 +32,13 @@ struct ast_guard {
 void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start);
 /* Cosine between a vector and another, both about an origin (NULL: zero); 0 where one of them is at the origin. */
 float ast_guard_likeness(const float *vector, const float *other, const float *origin, int dim);
+/* A winner's vector beside the start's (anchor) and the models' means, all about the origin. */
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
-/* The guard after a frame whose winner resembles so and whose cloud has this spread (in object sizes). A frame is not trusted when its
- * likeness to the start falls below cfg->guard and that to what is known below cfg->recall of the usual, while the cloud is undecided or
- * nothing like the object is left;
- * lost_after such frames make the object lost, until likenesses of cfg->reacquire and cfg->recall of the usual. With cfg->guard == 0
- * every frame is trusted. */
+/* The guard after a frame whose winner resembles so and whose cloud has this spread (object sizes). A frame is not trusted when its
+ * likeness to the start falls below cfg->guard of the usual and that to what is known below cfg->recall, while the cloud is undecided
+ * or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire and
+ * cfg->recall of the usual. */
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                                 const struct ast_resemblance *resemblance, float spread);
 /* While lost, half of the particles go on following what was likeliest, since it may still be the object in a new guise; the other

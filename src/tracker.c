@@ -421,12 +421,22 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     /* The winner's vector again (the tile has been reused), what it is worth, and its subspace when a model is due. */
     float *vector = t->desk->tile;
     describe(t, &found_box, vector);
-    const struct ast_resemblance resemblance =
-        ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
-    const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
-    const float score =
-        t->cfg.guard > 0.0f ? ast_confidence_probability(&resemblance, spread) : ast_confidence_score(vector, t->anchor, &t->bag);
-    const struct ast_guard guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
+    struct ast_guard guard = t->guard;
+    struct ast_confidence confidence;
+    float score;
+    if (t->cfg.guard > 0.0f) {
+        const struct ast_resemblance resemblance =
+            ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
+        const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
+        guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
+        const struct ast_evidence evidence = {resemblance.start, spread, ast_frame_share(frame, &found_box), guard.lately};
+        score = ast_confidence_probability(&evidence);
+        confidence = t->confidence;
+        confidence.status = ast_guard_status(&guard, &t->cfg, score);
+    } else {
+        score = ast_confidence_score(vector, t->anchor, &t->bag);
+        confidence = ast_confidence_next(t->confidence, &t->cfg, score);
+    }
     const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
     const int model_due = trusted && (first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval));
@@ -440,8 +450,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     t->velocity_x = trusted && !was_lost ? 0.5f * (t->velocity_x + found.x - t->estimate.x) : 0.0f;
     t->velocity_y = trusted && !was_lost ? 0.5f * (t->velocity_y + found.y - t->estimate.y) : 0.0f;
     t->estimate = found;
-    t->confidence = ast_confidence_next(t->confidence, &t->cfg, score);
-    if (t->cfg.guard > 0.0f) t->confidence.status = ast_guard_status(&guard, &t->cfg, score);
+    t->confidence = confidence;
     t->guard = guard;
     t->models = models;
     copy_cloud(&t->cloud, &t->proposal);

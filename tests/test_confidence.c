@@ -170,34 +170,31 @@ static void test_zero_thresholds_turn_it_off(void) {
     assert_statuses(&cfg, low, "UUUU");
 }
 
-static void test_probability_falls_with_likeness_and_spread(void) {
-    const float likeness[] = {-1.0f, -0.2f, 0.3f, 0.6f, 1.0f}, spread[] = {0.0f, 0.05f, 0.3f, 2.0f, 50.0f};
-    for (int a = 0; a < 5; a++) {
-        for (int b = 0; b < 5; b++) {
-            for (int c = 0; c < 5; c++) {
-                const struct ast_resemblance r = {likeness[a], likeness[b]};
-                const float p = ast_confidence_probability(&r, spread[c]);
-                TEST_ASSERT_TRUE(p > 0.0f && p < 1.0f);
-                struct ast_resemblance better = r;
-                if (a < 4) {
-                    better.start = likeness[a + 1];
-                    TEST_ASSERT_TRUE(ast_confidence_probability(&better, spread[c]) > p);
-                }
-                better = r;
-                if (b < 4) {
-                    better.known = likeness[b + 1];
-                    TEST_ASSERT_TRUE(ast_confidence_probability(&better, spread[c]) > p);
-                }
-                if (c < 4) {
-                    TEST_ASSERT_TRUE(ast_confidence_probability(&r, spread[c + 1]) < p);
-                }
-            }
+/* Each piece of evidence has a direction of its own, whatever the others say. */
+static void test_probability_follows_the_evidence(void) {
+    static const float better[][4] = {{0.1f, 0, 0, 0}, {0, -0.04f, 0, 0}, {0, 0, 0.1f, 0}, {0, 0, 0, -0.1f}};
+    for (int a = 0; a < 81; a++) {
+        const struct ast_evidence seen = {-0.2f + 0.5f * (float)(a % 3), 0.05f + 0.4f * (float)(a / 3 % 3),
+                                          0.7f + 0.1f * (float)(a / 9 % 3), 0.1f + 0.2f * (float)(a / 27)};
+        const float p = ast_confidence_probability(&seen);
+        TEST_ASSERT_TRUE(p > 0.0f && p < 1.0f);
+        for (int b = 0; b < 4; b++) {
+            const struct ast_evidence more = {seen.start + better[b][0], seen.spread + better[b][1], seen.inside + better[b][2],
+                                              seen.lately + better[b][3]};
+            TEST_ASSERT_TRUE(ast_confidence_probability(&more) > p);
         }
     }
-    /* The regression itself, in double precision. */
-    const struct ast_resemblance usual = {0.5f, 0.8f};
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1 / (1 + exp(-(3.7 * 0.5 + 1.6 * 0.8 - 0.85 * log(0.06) - 2.7))),
-                              (double)ast_confidence_probability(&usual, 0.05f));
+}
+
+/* The ends of the evidence give no infinity and no NaN. */
+static void test_probability_is_finite_at_the_ends(void) {
+    static const struct ast_evidence ends[] = {{1, 0, 1, 0}, {-1, 1e6f, 0, 1}, {-1, 0, 0, 1}, {1, 1e6f, 1, 0}};
+    for (int e = 0; e < 4; e++) {
+        const float p = ast_confidence_probability(&ends[e]);
+        TEST_ASSERT_TRUE(p >= 0.0f && p <= 1.0f);
+    }
+    TEST_ASSERT_TRUE(ast_confidence_probability(&ends[0]) > 0.99f);
+    TEST_ASSERT_TRUE(ast_confidence_probability(&ends[1]) < 0.01f);
 }
 
 int main(void) {
@@ -213,6 +210,7 @@ int main(void) {
     RUN_TEST(test_thresholds_are_exclusive);
     RUN_TEST(test_lost_after_one_and_after_many);
     RUN_TEST(test_zero_thresholds_turn_it_off);
-    RUN_TEST(test_probability_falls_with_likeness_and_spread);
+    RUN_TEST(test_probability_follows_the_evidence);
+    RUN_TEST(test_probability_is_finite_at_the_ends);
     return UNITY_END();
 }

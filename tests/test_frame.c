@@ -205,8 +205,25 @@ static void test_conversions_refuse_what_cannot_be(void) {
     }
 }
 
+/* Of a box of 10 x 20 pixels in a frame of 40 x 30. */
+static void test_share_of_a_box_inside_the_frame(void) {
+    static const struct {
+        float x, y, share;
+    } places[] = {{5, 5, 1},     {0, 0, 1},           {30, 10, 1},     {-5, 5, 0.5f},  {-10, 5, 0},      {-50, 5, 0},
+                  {35, 5, 0.5f}, {37.5f, 20, 0.125f}, {5, -15, 0.25f}, {5, 25, 0.25f}, {-5, -10, 0.25f}, {40, 30, 0}};
+    const uint8_t black = 0;
+    const ast_frame frame = {&black, 40, 30, 40};
+    const ast_box larger = {-40, -15, 80, 60};
+    for (size_t p = 0; p < sizeof places / sizeof places[0]; p++) {
+        const ast_box box = {places[p].x, places[p].y, 10, 20};
+        TEST_ASSERT_EQUAL_FLOAT(places[p].share, ast_frame_share(&frame, &box));
+    }
+    TEST_ASSERT_EQUAL_FLOAT(0.25f, ast_frame_share(&frame, &larger));
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_share_of_a_box_inside_the_frame);
     RUN_TEST(test_frame_sides);
     RUN_TEST(test_frame_stride);
     RUN_TEST(test_frame_fits_memory);
