@@ -179,10 +179,23 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_TINY:
         memcpy(cfg, &paper, sizeof *cfg);
         cfg->particles = 100;
+        cfg->view = 48; /* patches from the whole frame would take most of the time */
+        cfg->view_object = 16;
         cfg->patch_width = 16;
         cfg->patch_height = 16;
         cfg->bag_size = 5;
         cfg->bag_interval = 10;
+        return AST_OK;
+    case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
+        memcpy(cfg, &robust, sizeof *cfg);
+        cfg->particles = 200;
+        cfg->view = 96;
+        cfg->patch_width = 12;
+        cfg->patch_height = 12;
+        cfg->gradient_cells = 8;
+        cfg->bag_size = 10;
+        cfg->background = 32;
+        cfg->background_refresh = 4;
         return AST_OK;
     default: return AST_E_RANGE;
     }

@@ -150,9 +150,9 @@ static void assert_follows(const struct fit *fit, double mean, const char *what)
 }
 
 static void test_every_preset_follows(void) {
-    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY};
-    static const char *const names[] = {"paper", "robust", "tiny"};
-    for (int p = 0; p < 3; p++) {
+    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_COMPACT, AST_PRESET_TINY};
+    static const char *const names[] = {"paper", "robust", "compact", "tiny"};
+    for (int p = 0; p < 4; p++) {
         for (int b = 0; b < BACKENDS; b++) {
             const ast_config cfg = preset(presets[p]);
             const struct fit fit = follow(&cfg, backends[b], 1, 1.0, WATCHED ? 20 : 60);

@@ -23,7 +23,7 @@ def started(preset: str = "tiny", **config: Any) -> Tracker:
     return tracker
 
 
-@pytest.mark.parametrize("preset", ["robust", "paper", "tiny"])
+@pytest.mark.parametrize("preset", ["robust", "paper", "compact", "tiny"])
 def test_the_target_is_followed(preset: str) -> None:
     tracker = started(preset)
     results = [tracker.update(frame) for frame in FRAMES[1:]]
