@@ -86,11 +86,11 @@ static const ast_config paper = {
     .walk_x = 8.0f,
     .walk_y = 5.0f,
     .walk_scale = 0.01f,
-    .scale_min = 0.3f,
-    .scale_max = 4.0f,
     .draws = AST_DRAWS_RANDOM,
     .velocity = 0.0f,
     .incumbent = AST_NO,
+    .scale_min = 0.3f,
+    .scale_max = 4.0f,
     .view = 0,
     .view_object = 36,
     .patch_weight = 1.0f,
@@ -178,13 +178,18 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_ROBUST: memcpy(cfg, &robust, sizeof *cfg); return AST_OK;
     case AST_PRESET_TINY:
         memcpy(cfg, &paper, sizeof *cfg);
-        cfg->particles = 100;
+        cfg->particles = 88;
         cfg->view = 48; /* patches from the whole frame would take most of the time */
         cfg->view_object = 16;
         cfg->patch_width = 16;
         cfg->patch_height = 16;
         cfg->bag_size = 5;
         cfg->bag_interval = 10;
+        /* A camera left to itself must find again what it lost. A guard needs that single frames are right: more weight on the means. */
+        cfg->alpha = 10.0f;
+        cfg->keep_first = AST_YES;
+        cfg->guard = 0.6f;
+        cfg->lost_after = 2;
         return AST_OK;
     case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
         memcpy(cfg, &robust, sizeof *cfg);

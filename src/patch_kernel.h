@@ -87,5 +87,12 @@ static void normalise(float *restrict patch, int length, int normalisation) {
     if (normalisation == AST_NORMALISE_MEAN) return;
     for (int l = 0; l < LEVELS; l++) square += sums[l];
     const float factor = (float)(1 / (ast_sqrt(square) + (ast_real)1 / 255));
-    for (int i = 0; i < length; i++) patch[i] *= factor;
+    int i = 0;
+    for (; i < whole; i += 4) {
+        patch[i] *= factor;
+        patch[i + 1] *= factor;
+        patch[i + 2] *= factor;
+        patch[i + 3] *= factor;
+    }
+    for (; i < length; i++) patch[i] *= factor;
 }

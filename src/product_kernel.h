@@ -20,8 +20,17 @@ static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
         }
     }
 #endif
-    for (; d < depth; d++)
-        for (int l = 0; l < AST_LANES; l++) panel[d * AST_LANES + l] = m[(size_t)(l < used ? l : 0) * ld + (size_t)d];
+    for (int l = 0; l < AST_LANES; l += 4) {
+        const float *w = m + (size_t)(l < used ? l : 0) * ld, *x = m + (size_t)(l + 1 < used ? l + 1 : 0) * ld;
+        const float *y = m + (size_t)(l + 2 < used ? l + 2 : 0) * ld, *z = m + (size_t)(l + 3 < used ? l + 3 : 0) * ld;
+        float *to = panel + d * AST_LANES + l;
+        for (int i = d; i < depth; i++, to += AST_LANES) {
+            to[0] = w[i];
+            to[1] = x[i];
+            to[2] = y[i];
+            to[3] = z[i];
+        }
+    }
 }
 
 #if AST_HAS_VECTORS
