@@ -186,7 +186,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
         cfg->bag_size = 5;
         cfg->bag_interval = 10;
         /* A camera left to itself must find again what it lost. A guard needs that single frames are right: more weight on the means. */
-        cfg->alpha = 10.0f;
+        cfg->alpha = 2.0f;
         cfg->keep_first = AST_YES;
         cfg->guard = 0.6f;
         cfg->lost_after = 2;

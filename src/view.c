@@ -11,8 +11,9 @@ void ast_view_layout(struct ast_view *view, const ast_config *cfg, struct ast_ar
     view->object = cfg->view_object;
     if (view->side == 0) return;
     view->pixels = ast_arena_take(arena, side * side, sizeof *view->pixels);
-    view->rows = ast_arena_take(arena, (size_t)COLUMNS * AST_RESAMPLER_ROWS, sizeof *view->rows);
-    ast_resampler_layout(&view->resampler, COLUMNS, arena);
+    const int columns = view->side < COLUMNS ? view->side : COLUMNS;
+    view->rows = ast_arena_take(arena, (size_t)columns * AST_RESAMPLER_ROWS, sizeof *view->rows);
+    ast_resampler_layout(&view->resampler, columns, arena);
 }
 
 static int within(float v, int low, int high) {
@@ -49,10 +50,10 @@ void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box 
         ast_resampler_aim_columns(&view->resampler, frame, &window, width, height, begin, columns);
         for (int r = 0; r < height; r += AST_RESAMPLER_ROWS) {
             const int rows = height - r < AST_RESAMPLER_ROWS ? height - r : AST_RESAMPLER_ROWS;
-            ast_resampler_rows(&view->resampler, frame, r, rows, view->rows, COLUMNS);
+            ast_resampler_rows(&view->resampler, frame, r, rows, view->rows, (size_t)columns);
             for (int k = 0; k < rows; k++) {
                 uint8_t *out = view->pixels + (size_t)(r + k) * (size_t)view->side + begin;
-                const float *row = view->rows + (size_t)k * COLUMNS;
+                const float *row = view->rows + (size_t)k * (size_t)columns;
                 for (int c = 0; c < columns; c++) out[c] = (uint8_t)within(row[c] + 0.5f, 0, 255);
             }
         }

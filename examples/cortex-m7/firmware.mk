@@ -110,7 +110,7 @@ link-firmware: $(firmware_lib_objects) ## fails when the library needs more of a
 	    awk '{ print $$2 }' | grep -v -x -E 'memcpy|memset|memcmp' | paste -s -d ' '); \
 	if [ -n "$$missing" ]; then echo "needed from outside: $$missing" >&2; exit 1; fi; echo "needs memcpy, memset and memcmp, nothing else"
 
-test-cross: ## the same bits on every processor, by gcc and clang, -O0 to -O3
-	@scripts/test_cross.sh $(BUILDDIR)/cross whole
-test-cross-short: ## the same by gcc, -O3
-	@scripts/test_cross.sh $(BUILDDIR)/cross short
+test-cross: unity ## the same bits on every processor, by gcc and clang, -O0 to -O3, and the C tests there
+	+@scripts/test_cross.sh $(BUILDDIR)/cross whole
+test-cross-short: unity ## the same by gcc, -O3, and some of the C tests
+	+@scripts/test_cross.sh $(BUILDDIR)/cross short
