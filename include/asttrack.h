@@ -111,7 +111,7 @@ enum {
     AST_MODEL_AFFINE = 0, /* mean and basis: the paper's tracker */
     AST_MODEL_LINEAR = 1  /* mu = 0 everywhere: the paper's linear-subspace ablation (table 1); takes AST_BASIS_RAW only */
 };
-/* how distances are computed; the numbers are the same */
+/* how distances are computed; the numbers are the same. A build with AST_NO_LITERAL is smaller and has the first only. */
 enum {
     AST_SCORING_GRAM = 0,   /* one matrix product a frame and small eigen-problems */
     AST_SCORING_LITERAL = 1 /* each candidate's images formed, thin SVD, U_i'U_j, thin SVD again: the paper as written */

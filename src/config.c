@@ -178,7 +178,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_ROBUST: memcpy(cfg, &robust, sizeof *cfg); return AST_OK;
     case AST_PRESET_TINY:
         memcpy(cfg, &paper, sizeof *cfg);
-        cfg->particles = 88;
+        cfg->particles = 84;
         cfg->view = 48; /* patches from the whole frame would take most of the time */
         cfg->view_object = 16;
         cfg->patch_width = 16;
@@ -238,6 +238,9 @@ int ast_config_check(const ast_config *cfg, const char **field) {
     if (offender == NULL && cfg->background_refresh > cfg->background) offender = "background_refresh";
     if (offender == NULL && cfg->background > 0 && cfg->model == AST_MODEL_LINEAR) offender = "model";
     if (offender == NULL && cfg->background > 0 && cfg->scoring != AST_SCORING_GRAM) offender = "scoring";
+#ifdef AST_NO_LITERAL
+    if (offender == NULL && cfg->scoring == AST_SCORING_LITERAL) offender = "scoring";
+#endif
     if (offender == NULL && cfg->score_lost > cfg->score_uncertain) offender = "score_lost";
     if (offender == NULL) return AST_OK;
     if (field != NULL) *field = offender;
