@@ -316,7 +316,7 @@ struct round {
 };
 
 static int score_part(void *shared, int worker, int part) {
-    const struct round *round = shared;
+    const struct round *round = (const struct round *)shared;
     struct ast_tracker *t = round->t;
     struct ast_desk *desk = &t->desk[worker];
     const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
@@ -348,7 +348,7 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
 
 /* What all candidates share: the first part is the frame that they show, the second what is known without it. */
 static int prepare_part(void *shared, int worker, int part) {
-    const struct round *round = shared;
+    const struct round *round = (const struct round *)shared;
     struct ast_tracker *t = round->t;
     (void)worker; /* the second part alone needs a desk, and takes the first */
     if (part == 0) {

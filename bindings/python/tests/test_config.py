@@ -12,7 +12,8 @@ from asttrack import PRESETS, AstError, ErrorCode, Tracker, config_fields
 def test_presets_differ_and_all_start() -> None:
     assert set(PRESETS) == {"paper", "robust", "tiny", "compact"}
     sizes = {name: Tracker(name).memory_size for name in PRESETS}
-    assert sizes["tiny"] < sizes["paper"] < sizes["robust"] and sizes["tiny"] < sizes["compact"] < sizes["robust"] / 2
+    assert sizes["tiny"] < sizes["paper"] < sizes["robust"]
+    assert sizes["tiny"] < sizes["compact"] < sizes["robust"] / 2
     assert Tracker().config == Tracker("robust").config
 
 
