@@ -7,7 +7,10 @@
 #include <string.h>
 
 const char *preset_name(int preset) {
-    return preset == AST_PRESET_PAPER ? "paper" : preset == AST_PRESET_ROBUST ? "robust" : "tiny";
+    return preset == AST_PRESET_PAPER     ? "paper"
+           : preset == AST_PRESET_ROBUST  ? "robust"
+           : preset == AST_PRESET_COMPACT ? "compact"
+                                          : "tiny";
 }
 
 void contender_choose(struct contender *c, const struct film *film, int preset, const struct ast_linalg *linalg) {

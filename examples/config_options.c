@@ -39,7 +39,8 @@ static bool load_preset(const char *name, ast_config *config) {
     static const struct {
         const char *name;
         int preset;
-    } presets[] = {{"paper", AST_PRESET_PAPER}, {"robust", AST_PRESET_ROBUST}, {"tiny", AST_PRESET_TINY}};
+    } presets[] = {
+        {"paper", AST_PRESET_PAPER}, {"robust", AST_PRESET_ROBUST}, {"compact", AST_PRESET_COMPACT}, {"tiny", AST_PRESET_TINY}};
     for (size_t i = 0; i < sizeof presets / sizeof presets[0]; ++i) {
         if (strcmp(name, presets[i].name) == 0) {
             const int code = ast_config_preset(config, presets[i].preset);
@@ -49,7 +50,7 @@ static bool load_preset(const char *name, ast_config *config) {
             return code == AST_OK;
         }
     }
-    report_error("--preset %s: not a preset (paper, robust, tiny)", name);
+    report_error("--preset %s: not a preset (paper, robust, compact, tiny)", name);
     return false;
 }
 

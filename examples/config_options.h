@@ -7,7 +7,7 @@
 /* Rows for the table of a sub-command; its own ids stay below CONFIG_OPTION_PRESET. */
 enum { CONFIG_OPTION_PRESET = 1000, CONFIG_OPTION_SET, CONFIG_OPTION_SEED };
 #define CONFIG_OPTION_ROWS                                                                                                         \
-    {"--preset", "NAME", false, CONFIG_OPTION_PRESET, "paper, robust (the default) or tiny"},                                      \
+    {"--preset", "NAME", false, CONFIG_OPTION_PRESET, "paper, robust (the default), compact or tiny"},                             \
         {"--set", "FIELD=VALUE", true, CONFIG_OPTION_SET, "change a field of the preset; `asttrack config` lists the fields"}, {   \
         "--seed", "N", false, CONFIG_OPTION_SEED, "seed of the tracker's random generator"                                         \
     }

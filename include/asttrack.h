@@ -89,7 +89,12 @@ AST_API const char *ast_backend(void);
 #define AST_MAX_THREADS 16      /* most threads that share a step's work */
 
 /* Values of the enumerated fields: plain int32_t in the struct, so that no ABI's enum size matters. */
-enum { AST_PRESET_PAPER = 0, AST_PRESET_ROBUST = 1, AST_PRESET_TINY = 2 };
+enum {
+    AST_PRESET_PAPER = 0,  /* the publication */
+    AST_PRESET_ROBUST = 1, /* the default choice where there is a megabyte */
+    AST_PRESET_TINY = 2,   /* 64 KiB with its stack */
+    AST_PRESET_COMPACT = 3 /* the robust one in reduced sizes, for a microcontroller with half a megabyte */
+};
 /* normalisation of a patch, applied to its pixels in [0, 1] */
 enum {
     AST_NORMALISE_NONE = 0, /* raw pixel values */
@@ -106,7 +111,7 @@ enum {
     AST_MODEL_AFFINE = 0, /* mean and basis: the paper's tracker */
     AST_MODEL_LINEAR = 1  /* mu = 0 everywhere: the paper's linear-subspace ablation (table 1); takes AST_BASIS_RAW only */
 };
-/* how distances are computed; the numbers are the same */
+/* how distances are computed; the numbers are the same. A build with AST_NO_LITERAL is smaller and has the first only. */
 enum {
     AST_SCORING_GRAM = 0,   /* one matrix product a frame and small eigen-problems */
     AST_SCORING_LITERAL = 1 /* each candidate's images formed, thin SVD, U_i'U_j, thin SVD again: the paper as written */

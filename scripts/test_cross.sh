@@ -1,6 +1,7 @@
 #!/bin/bash
 # The same bits on every processor, by every compiler, at every optimisation: builds tests/cross/bits.c with the library's sources for
-# each, runs it (other processors in qemu-user) and compares what it prints with the first build's, for ast_real double and float.
+# each, runs it (other processors in qemu-user) and compares what it prints with the first build's, for ast_real double and float. Then
+# the C tests themselves, by gcc -O2: the short run takes some of them, the whole run all but those of the command and of the bench.
 # usage: test_cross.sh DIRECTORY short|whole
 set -u
 
@@ -22,8 +23,16 @@ targets=(
 )
 # The short run leaves out what takes longest: clang, and what is less optimised.
 case $extent in
-short) compilers=(gcc) optimisations=(-O3) ;;
-whole) compilers=(gcc clang) optimisations=(-O0 -O1 -O2 -O3) ;;
+short)
+    compilers=(gcc) optimisations=(-O3)
+    tests="test_config test_decision test_edges test_maths test_random test_resample test_state test_view"
+    ;;
+whole)
+    compilers=(gcc clang) optimisations=(-O0 -O1 -O2 -O3)
+    tests=$(for source in tests/test_*.c; do
+        case $source in *test_command*|*test_bench*|*test_memory*) ;; *) basename "$source" .c ;; esac
+    done)
+    ;;
 *) echo "usage: test_cross.sh DIRECTORY short|whole" >&2; exit 2 ;;
 esac
 
@@ -49,6 +58,19 @@ try() {
     fi
 }
 
+# unit_tests TARGET EMULATOR COMPILER: the C tests there; a row of the table
+unit_tests() {
+    local target=$1 emulator=$2 compiler=$3 name=${1%% *} flags=-O2 summary
+    [ "$compiler" = s390x-linux-gnu-gcc ] && flags="-O2 -fexcess-precision=fast"
+    summary=$directory/$name/tests/summary
+    rm -f "$summary"
+    AST_TEST_RUNNER=$emulator "${MAKE:-make}" --no-print-directory BUILDDIR="$directory/$name" CC="$compiler" CFLAGS="$flags" \
+        LDFLAGS=-static LAPACKE=no JPEG=no NATIVE=no BACKEND=builtin TESTS="$(echo $tests)" test-c >"$directory/$name.log" 2>&1
+    if [ $? -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); grep -a FAIL "$directory/$name.log"; fi
+    rows+=("$(printf '  %-22s %-28s %-10s %s' "$target" "$compiler" "-O2" "$(sed 's/^[^:]*: //' "$summary" 2>/dev/null || echo "does not build")")")
+}
+
+rows=()
 mkdir -p "$directory"
 rm -f "$directory"/expected-*
 for row in "${targets[@]}"; do
@@ -71,6 +93,9 @@ for row in "${targets[@]}"; do
             done
         done
     done
+    unit_tests "$target" "$emulator" "$gcc"
 done
+echo "C tests, ast_real double:"
+[ ${#rows[@]} -eq 0 ] || printf '%s\n' "${rows[@]}"
 echo "cross tests: $passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

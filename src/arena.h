@@ -5,6 +5,8 @@
 
 #include <stddef.h>
 
+#include "dialect.h"
+
 enum { AST_ALIGNMENT = 64 }; /* a cache line, and the widest vector */
 
 struct ast_arena {
@@ -13,7 +15,7 @@ struct ast_arena {
 };
 
 /* count elements of size bytes, aligned; NULL while counting. */
-void *ast_arena_take(struct ast_arena *arena, size_t count, size_t size);
+ast_memory ast_arena_take(struct ast_arena *arena, size_t count, size_t size);
 /* The first aligned address in a block. */
 unsigned char *ast_align(void *block);
 

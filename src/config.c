@@ -86,11 +86,11 @@ static const ast_config paper = {
     .walk_x = 8.0f,
     .walk_y = 5.0f,
     .walk_scale = 0.01f,
-    .scale_min = 0.3f,
-    .scale_max = 4.0f,
     .draws = AST_DRAWS_RANDOM,
     .velocity = 0.0f,
     .incumbent = AST_NO,
+    .scale_min = 0.3f,
+    .scale_max = 4.0f,
     .view = 0,
     .view_object = 36,
     .patch_weight = 1.0f,
@@ -178,11 +178,29 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_ROBUST: memcpy(cfg, &robust, sizeof *cfg); return AST_OK;
     case AST_PRESET_TINY:
         memcpy(cfg, &paper, sizeof *cfg);
-        cfg->particles = 100;
+        cfg->particles = 84;
+        cfg->view = 48; /* patches from the whole frame would take most of the time */
+        cfg->view_object = 16;
         cfg->patch_width = 16;
         cfg->patch_height = 16;
         cfg->bag_size = 5;
         cfg->bag_interval = 10;
+        /* A camera left to itself must find again what it lost. A guard needs that single frames are right: more weight on the means. */
+        cfg->alpha = 2.0f;
+        cfg->keep_first = AST_YES;
+        cfg->guard = 0.6f;
+        cfg->lost_after = 2;
+        return AST_OK;
+    case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
+        memcpy(cfg, &robust, sizeof *cfg);
+        cfg->particles = 200;
+        cfg->view = 96;
+        cfg->patch_width = 12;
+        cfg->patch_height = 12;
+        cfg->gradient_cells = 8;
+        cfg->bag_size = 10;
+        cfg->background = 32;
+        cfg->background_refresh = 4;
         return AST_OK;
     default: return AST_E_RANGE;
     }
@@ -220,6 +238,9 @@ int ast_config_check(const ast_config *cfg, const char **field) {
     if (offender == NULL && cfg->background_refresh > cfg->background) offender = "background_refresh";
     if (offender == NULL && cfg->background > 0 && cfg->model == AST_MODEL_LINEAR) offender = "model";
     if (offender == NULL && cfg->background > 0 && cfg->scoring != AST_SCORING_GRAM) offender = "scoring";
+#ifdef AST_NO_LITERAL
+    if (offender == NULL && cfg->scoring == AST_SCORING_LITERAL) offender = "scoring";
+#endif
     if (offender == NULL && cfg->score_lost > cfg->score_uncertain) offender = "score_lost";
     if (offender == NULL) return AST_OK;
     if (field != NULL) *field = offender;

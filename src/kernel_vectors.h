@@ -6,15 +6,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if defined(__GNUC__)
+#define AST_ALWAYS_INLINE static inline __attribute__((always_inline))
+#else
+#define AST_ALWAYS_INLINE static inline
+#endif
 #if AST_VECTOR_BYTES > 4
 #define AST_HAS_VECTORS 1
-#define AST_ALWAYS_INLINE static inline __attribute__((always_inline))
 /* At any address. */
 typedef float vector __attribute__((vector_size(AST_VECTOR_BYTES), aligned(4), may_alias));
 typedef float four __attribute__((vector_size(16), aligned(4), may_alias));
 #else
 #define AST_HAS_VECTORS 0
-#define AST_ALWAYS_INLINE static inline
 typedef float vector;
 #endif
 enum { WIDTH = AST_VECTOR_BYTES / (int)sizeof(float) };

@@ -11,7 +11,6 @@
 #endif
 #else
 #define AST_VECTOR_BYTES 4
-#define AST_PANEL_VECTORS 4
 #define AST_PANEL_COLUMNS 4
 #endif
 #include "kernels_body.h"

@@ -1,6 +1,7 @@
 /* Linear algebra by OpenBLAS and LAPACKE. Only *_work calls, column-major: the high-level and the row-major ones allocate. */
 #include "linalg.h"
 
+#ifndef ARDUINO /* whose builder takes every file of src/ */
 #include <cblas.h>
 #include <lapacke.h>
 
@@ -45,3 +46,4 @@ static int svd(int rows, int cols, ast_real *a, int vectors, ast_real *values, a
 }
 
 const struct ast_linalg ast_linalg_lapacke = {"lapacke", prepare, product, product_real, svd_work, svd};
+#endif

@@ -4,7 +4,7 @@ void ast_sampler_layout(struct ast_sampler *sampler, const ast_config *cfg, stru
     sampler->width = cfg->patch_width;
     sampler->height = cfg->patch_height;
     sampler->normalisation = cfg->normalisation;
-    ast_resampler_layout(&sampler->resampler, cfg->patch_width, cfg->patch_height, arena);
+    ast_resampler_layout(&sampler->resampler, cfg->patch_width, arena);
 }
 
 void ast_sampler_patch(struct ast_sampler *sampler, const ast_frame *frame, const ast_box *window, float *patch) {

@@ -3,7 +3,10 @@
 
 #include "kernel_vectors.h"
 
-enum { VECTORS = AST_PANEL_VECTORS * WIDTH <= AST_LANES ? AST_PANEL_VECTORS : AST_LANES / WIDTH, COLUMNS = AST_PANEL_COLUMNS };
+enum { COLUMNS = AST_PANEL_COLUMNS };
+#if AST_HAS_VECTORS
+enum { VECTORS = AST_PANEL_VECTORS * WIDTH <= AST_LANES ? AST_PANEL_VECTORS : AST_LANES / WIDTH };
+#endif
 
 static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
     int d = 0;
@@ -17,10 +20,20 @@ static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
         }
     }
 #endif
-    for (; d < depth; d++)
-        for (int l = 0; l < AST_LANES; l++) panel[d * AST_LANES + l] = m[(size_t)(l < used ? l : 0) * ld + (size_t)d];
+    for (int l = 0; l < AST_LANES; l += 4) {
+        const float *w = m + (size_t)(l < used ? l : 0) * ld, *x = m + (size_t)(l + 1 < used ? l + 1 : 0) * ld;
+        const float *y = m + (size_t)(l + 2 < used ? l + 2 : 0) * ld, *z = m + (size_t)(l + 3 < used ? l + 3 : 0) * ld;
+        float *to = panel + d * AST_LANES + l;
+        for (int i = d; i < depth; i++, to += AST_LANES) {
+            to[0] = w[i];
+            to[1] = x[i];
+            to[2] = y[i];
+            to[3] = z[i];
+        }
+    }
 }
 
+#if AST_HAS_VECTORS
 /* COLUMNS columns at a time, their sums in registers; past the last of count, it is repeated and not written. */
 AST_ALWAYS_INLINE void block_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums,
                                      size_t ld_sums) {
@@ -40,6 +53,48 @@ AST_ALWAYS_INLINE void block_product(const float *panel, int depth, const float 
             for (int v = 0; v < VECTORS; v++) *(vector *)(sums + (size_t)c * ld_sums + l + v * WIDTH) += sum[c][v];
     }
 }
+#else
+/* Four lanes by name, so that they stay in registers even where the compiler unrolls nothing. */
+struct lanes {
+    float a, b, c, d;
+};
+
+AST_ALWAYS_INLINE void add_product(struct lanes *sum, struct lanes x, float y) {
+    sum->a += x.a * y;
+    sum->b += x.b * y;
+    sum->c += x.c * y;
+    sum->d += x.d * y;
+}
+
+AST_ALWAYS_INLINE void add_lanes(float *to, struct lanes sum) {
+    to[0] += sum.a;
+    to[1] += sum.b;
+    to[2] += sum.c;
+    to[3] += sum.d;
+}
+
+/* The same, four lanes by four columns. */
+static void block_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums) {
+    for (int l = 0; l < AST_LANES; l += 4) {
+        const float *from = panel + l, *w = columns, *x = count > 1 ? w + ld : w, *y = count > 2 ? x + ld : w,
+                    *z = count > 3 ? y + ld : w;
+        const struct lanes none = {0, 0, 0, 0};
+        struct lanes of_w = none, of_x = none, of_y = none, of_z = none;
+        float *to = sums + l;
+        for (int d = depth; d > 0; d--, from += AST_LANES) {
+            const struct lanes part = {from[0], from[1], from[2], from[3]};
+            add_product(&of_w, part, *w++);
+            add_product(&of_x, part, *x++);
+            add_product(&of_y, part, *y++);
+            add_product(&of_z, part, *z++);
+        }
+        add_lanes(to, of_w);
+        if (count > 1) add_lanes(to + ld_sums, of_x);
+        if (count > 2) add_lanes(to + 2 * ld_sums, of_y);
+        if (count > 3) add_lanes(to + 3 * ld_sums, of_z);
+    }
+}
+#endif
 
 static void panel_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums) {
     int c = 0;

@@ -7,10 +7,15 @@
 
 #include <float.h>
 
+#include "dialect.h"
 #include "maths.h"
 
 #ifndef AST_REAL
+#ifdef ARDUINO /* where a library gives no flags */
+#define AST_REAL float
+#else
 #define AST_REAL double
+#endif
 #endif
 typedef AST_REAL ast_real;
 

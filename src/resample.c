@@ -7,20 +7,35 @@ static void axis_layout(struct ast_axis *axis, int length, struct ast_arena *are
     axis->weight = ast_arena_take(arena, (size_t)length * AST_TAPS, sizeof *axis->weight);
 }
 
-void ast_resampler_layout(struct ast_resampler *r, int width, int height, struct ast_arena *arena) {
+void ast_resampler_layout(struct ast_resampler *r, int width, struct ast_arena *arena) {
     r->kernels = ast_kernels();
     axis_layout(&r->columns, width, arena);
-    axis_layout(&r->rows, height, arena);
-    r->line = ast_arena_take(arena, (AST_RESAMPLER_PIXELS + 2 * AST_RESAMPLER_CHUNK) * AST_RESAMPLER_ROWS, sizeof *r->line);
+    axis_layout(&r->rows, AST_LANES, arena);
+    r->line = ast_arena_take(arena, (AST_RESAMPLER_PIXELS + 2 * AST_RESAMPLER_MARGIN) * AST_RESAMPLER_ROWS, sizeof *r->line);
+}
+
+void ast_resampler_aim_columns(struct ast_resampler *r, const ast_frame *frame, const ast_box *window, int width, int height,
+                               int begin, int count) {
+    r->window = *window;
+    r->columns.total = width;
+    r->columns.begin = begin;
+    r->columns.length = count;
+    r->kernels->axis(&r->columns, window->x, window->w, frame->width);
+    r->rows.total = height;
+    r->rows.length = 0; /* none yet */
 }
 
 void ast_resampler_aim(struct ast_resampler *r, const ast_frame *frame, const ast_box *window, int width, int height) {
-    r->columns.length = width;
-    r->rows.length = height;
-    r->kernels->axis(&r->columns, window->x, window->w, frame->width);
-    r->kernels->axis(&r->rows, window->y, window->h, frame->height);
+    ast_resampler_aim_columns(r, frame, window, width, height, 0, width);
 }
 
 void ast_resampler_rows(struct ast_resampler *r, const ast_frame *frame, int row, int count, float *out, size_t ld) {
-    r->kernels->rows(&r->columns, &r->rows, frame, row, count, r->line, out, ld);
+    struct ast_axis *rows = &r->rows;
+    if (rows->length == 0 || row < rows->begin || row + count > rows->begin + rows->length) {
+        const int left = rows->total - row;
+        rows->begin = row;
+        rows->length = left < AST_LANES ? left : AST_LANES;
+        r->kernels->axis(rows, r->window.y, r->window.h, frame->height);
+    }
+    r->kernels->rows(&r->columns, rows, frame, row - rows->begin, count, r->line, out, ld);
 }

@@ -24,7 +24,7 @@ static inline int32_t whole_below(float v) {
  * at zero, so that the patch changes smoothly with the scale. */
 static void axis(struct ast_axis *restrict axis, float start, float extent, int source_length) {
     const int length = axis->length, last = source_length - 1;
-    const float step = extent / (float)length, limit = (float)(AST_TAPS - 3);
+    const float step = extent / (float)axis->total, limit = (float)(AST_TAPS - 3);
     float blur = step > 1.0f ? ast_sqrtf(step * step - 1.0f) : 0.0f;
     if (blur > limit) blur = limit;
     const float half = 0.5f * blur;
@@ -34,7 +34,7 @@ static void axis(struct ast_axis *restrict axis, float start, float extent, int 
 
     int taps = 1, least = 0, most = last;
     for (int i = 0; i < length; i++) {
-        at[i] = start + ((float)i + 0.5f) * step - 0.5f;
+        at[i] = start + ((float)(axis->begin + i) + 0.5f) * step - 0.5f;
         first[i] = whole_below(at[i] - half);
         count[i] = whole_below(at[i] + half) + 2 - first[i];
     }
@@ -77,22 +77,7 @@ static void axis(struct ast_axis *restrict axis, float start, float extent, int 
     }
 }
 
-enum { CHUNK = AST_RESAMPLER_CHUNK };
-
-/* The source rows of an output row, summed over CHUNK pixels. */
-AST_ALWAYS_INLINE void sum_chunk(const uint8_t *source, size_t stride, const float *weight, size_t step, int used, float *out) {
-#if AST_HAS_VECTORS
-    sixteen sum = {0};
-    for (int j = 0; j < used; j++) sum += SIXTEEN_NUMBERS(source + (size_t)j * stride) * weight[(size_t)j * step];
-    *(sixteen *)out = sum;
-#else
-    for (int i = 0; i < CHUNK; i++) out[i] = 0.0f;
-    for (int j = 0; j < used; j++)
-        for (int i = 0; i < CHUNK; i++) out[i] += (float)source[(size_t)j * stride + (size_t)i] * weight[(size_t)j * step];
-#endif
-}
-
-enum { GRID_ROWS = AST_RESAMPLER_ROWS };
+enum { CHUNK = AST_RESAMPLER_CHUNK, MARGIN = AST_RESAMPLER_MARGIN, GRID_ROWS = AST_RESAMPLER_ROWS };
 
 /* Source pixels to take for output i: as many for each, since a processor foresees that, but none outside the source. */
 static inline int taps_at(const struct ast_axis *axis, int i, int source_length) {
@@ -100,8 +85,16 @@ static inline int taps_at(const struct ast_axis *axis, int i, int source_length)
     return axis->taps < rest ? axis->taps : rest;
 }
 
+#if AST_HAS_VECTORS && AST_LANES == 16
+/* The source rows of an output row, summed over CHUNK pixels. */
+AST_ALWAYS_INLINE void sum_chunk(const uint8_t *source, size_t stride, const float *weight, size_t step, int used, float *out) {
+    sixteen sum = {0};
+    for (int j = 0; j < used; j++) sum += SIXTEEN_NUMBERS(source + (size_t)j * stride) * weight[(size_t)j * step];
+    *(sixteen *)out = sum;
+}
+
 /* Sums the source rows of `count` output rows from `row` on over the pixels first .. first + pixels - 1, and interleaves them:
- * line[GRID_ROWS (CHUNK + x) + k]. What lies in front of the first pixel and beyond the last, and in the lanes of no row, has no meaning. */
+ * line[GRID_ROWS (MARGIN + x) + k]. What lies in front of the first pixel and beyond the last, and in the lanes of no row, has no meaning. */
 static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int row, int count, int first, int pixels,
                      float *restrict line) {
     const size_t length = (size_t)rows->length, stride = (size_t)frame->stride;
@@ -126,30 +119,97 @@ static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int ro
             }
         }
         float *to = line + (CHUNK + (frame->width >= CHUNK ? x : begin)) * GRID_ROWS;
-#if AST_HAS_VECTORS
         for (int k = 0; k < count; k += 4)
             for (int i = 0; i < CHUNK; i += 4)
                 transpose_four(sum[k] + i, sum[k + 1] + i, sum[k + 2] + i, sum[k + 3] + i, to + i * GRID_ROWS + k, GRID_ROWS);
-#else
-        for (int i = 0; i < CHUNK; i++)
-            for (int k = 0; k < count; k++) to[i * GRID_ROWS + k] = sum[k][i];
-#endif
     }
 }
 
 /* One output of all rows. source: its first pixel in the line. */
 AST_ALWAYS_INLINE void sum_columns(const float *restrict source, const float *restrict weight, size_t step, int used,
                                    float *restrict out) {
-#if AST_HAS_VECTORS && AST_LANES == 16
     sixteen sum = {0};
     for (int j = 0; j < used; j++) sum += *(const sixteen *)(source + j * GRID_ROWS) * weight[(size_t)j * step];
     *(sixteen *)out = sum;
-#else
-    for (int k = 0; k < GRID_ROWS; k++) out[k] = 0.0f;
-    for (int j = 0; j < used; j++)
-        for (int k = 0; k < GRID_ROWS; k++) out[k] += source[j * GRID_ROWS + k] * weight[(size_t)j * step];
-#endif
 }
+
+/* The outputs c .. next - 1 of count rows, from the line, which begins with the first pixel of output c. */
+static void sum_outputs(const struct ast_axis *columns, const ast_frame *frame, int c, int next, int count, const float *line,
+                        float *restrict out, size_t ld) {
+    const int length = columns->length;
+    for (int i = c; i < next; i += 4) {
+        const int used = next - i < 4 ? next - i : 4;
+        AST_LANES_ALIGNED float sum[4][GRID_ROWS];
+        for (int q = 0; q < used; q++)
+            sum_columns(line + (MARGIN + columns->first[i + q] - columns->first[c]) * GRID_ROWS, columns->weight + i + q,
+                        (size_t)length, taps_at(columns, i + q, frame->width), sum[q]);
+        int k = 0;
+        for (; used == 4 && k + 4 <= count; k += 4)
+            transpose_four(sum[0] + k, sum[1] + k, sum[2] + k, sum[3] + k, out + (size_t)k * ld + i, ld);
+        for (; k < count; k++)
+            for (int q = 0; q < used; q++) out[(size_t)k * ld + (size_t)(i + q)] = sum[q][k];
+    }
+}
+#else
+/* The same without vectors: four pixels at a time, their sums in registers. */
+static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int row, int count, int first, int pixels,
+                     float *restrict line) {
+    const size_t length = (size_t)rows->length, stride = (size_t)frame->stride;
+    for (int k = 0; k < count; k++) {
+        const float *weights = rows->weight + row + k;
+        const uint8_t *from = frame->pixels + (size_t)rows->first[row + k] * stride + first;
+        float *to = line + MARGIN * GRID_ROWS + k;
+        const int used = rows->count[row + k];
+        int x = 0;
+        for (; x + 4 <= pixels; x += 4, from += 4, to += 4 * GRID_ROWS) {
+            float a = 0.0f, b = 0.0f, c = 0.0f, d = 0.0f;
+            const uint8_t *source = from;
+            const float *weight = weights;
+            for (int j = used; j > 0; j--, source += stride, weight += length) {
+                const float w = *weight;
+                a += (float)source[0] * w;
+                b += (float)source[1] * w;
+                c += (float)source[2] * w;
+                d += (float)source[3] * w;
+            }
+            to[0] = a;
+            to[GRID_ROWS] = b;
+            to[2 * GRID_ROWS] = c;
+            to[3 * GRID_ROWS] = d;
+        }
+        for (; x < pixels; x++, from++, to += GRID_ROWS) {
+            float sum = 0.0f;
+            for (int j = 0; j < used; j++) sum += (float)from[(size_t)j * stride] * weights[(size_t)j * length];
+            *to = sum;
+        }
+    }
+}
+
+static void sum_outputs(const struct ast_axis *columns, const ast_frame *frame, int c, int next, int count, const float *line,
+                        float *restrict out, size_t ld) {
+    const int length = columns->length;
+    (void)frame;
+    for (int i = c; i < next; i++) {
+        for (int k = 0; k < count; k += 4) { /* four rows in registers */
+            const float *source = line + (MARGIN + columns->first[i] - columns->first[c]) * GRID_ROWS + k,
+                        *weight = columns->weight + i;
+            float *to = out + (size_t)k * ld + i;
+            float p = 0.0f, q = 0.0f, r = 0.0f, s = 0.0f;
+            for (int j = columns->count[i]; j > 0; j--, source += GRID_ROWS, weight += length) {
+                const float w = *weight;
+                p += source[0] * w;
+                q += source[1] * w;
+                r += source[2] * w;
+                s += source[3] * w;
+            }
+            to[0] = p;
+            if (count - k > 1) to[ld] = q;
+            if (count - k > 2) to[2 * ld] = r;
+            if (count - k > 3) to[3 * ld] = s;
+        }
+    }
+}
+#endif
 
 static void rows(const struct ast_axis *columns, const struct ast_axis *rows, const ast_frame *frame, int first_row, int count,
                  float *restrict line, float *restrict out, size_t ld) {
@@ -164,19 +224,6 @@ static void rows(const struct ast_axis *columns, const struct ast_axis *rows, co
             end = behind;
         }
         sum_rows(rows, frame, first_row, count, first, end - first, line);
-        for (int i = c; i < next; i += 4) {
-            const int used = next - i < 4 ? next - i : 4;
-            AST_LANES_ALIGNED float sum[4][GRID_ROWS];
-            for (int q = 0; q < used; q++)
-                sum_columns(line + (CHUNK + columns->first[i + q] - first) * GRID_ROWS, columns->weight + i + q, (size_t)length,
-                            taps_at(columns, i + q, frame->width), sum[q]);
-            int k = 0;
-#if AST_HAS_VECTORS
-            for (; used == 4 && k + 4 <= count; k += 4)
-                transpose_four(sum[0] + k, sum[1] + k, sum[2] + k, sum[3] + k, out + (size_t)k * ld + i, ld);
-#endif
-            for (; k < count; k++)
-                for (int q = 0; q < used; q++) out[(size_t)k * ld + (size_t)(i + q)] = sum[q][k];
-        }
+        sum_outputs(columns, frame, c, next, count, line, out, ld);
     }
 }

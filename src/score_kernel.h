@@ -7,6 +7,7 @@ static ast_real depart(float *restrict x, const float *restrict origin, int n) {
     enum { SUMS = 8 };
     ast_real sum[SUMS] = {0};
     int d = 0;
+#if AST_HAS_VECTORS
     for (; d + SUMS <= n; d += SUMS) {
         for (int l = 0; l < SUMS; l++) {
             const float rest = x[d + l] - origin[d + l];
@@ -14,6 +15,28 @@ static ast_real depart(float *restrict x, const float *restrict origin, int n) {
             sum[l] += (ast_real)rest * (ast_real)rest;
         }
     }
+#else
+    for (int l = 0; l < SUMS; l += 4) { /* four of them in registers */
+        ast_real p = 0, q = 0, r = 0, s = 0;
+        for (d = 0; d + SUMS <= n; d += SUMS) {
+            float *at = x + d + l;
+            const float *from = origin + d + l;
+            const float a = at[0] - from[0], b = at[1] - from[1], c = at[2] - from[2], e = at[3] - from[3];
+            at[0] = a;
+            at[1] = b;
+            at[2] = c;
+            at[3] = e;
+            p += (ast_real)a * (ast_real)a;
+            q += (ast_real)b * (ast_real)b;
+            r += (ast_real)c * (ast_real)c;
+            s += (ast_real)e * (ast_real)e;
+        }
+        sum[l] = p;
+        sum[l + 1] = q;
+        sum[l + 2] = r;
+        sum[l + 3] = s;
+    }
+#endif
     for (; d < n; d++) {
         x[d] -= origin[d];
         sum[0] += (ast_real)x[d] * (ast_real)x[d];

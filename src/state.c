@@ -184,7 +184,7 @@ int ast_save(const ast_tracker *t, void *buffer, size_t size) {
     if (size < total) return AST_E_BUFFER;
 
     struct ast_tracker view = *t; /* the visit takes a mutable tracker; writing changes nothing in it */
-    struct codec c = {.mode = CODEC_WRITE, .out = buffer};
+    struct codec c = {.mode = CODEC_WRITE, .out = (unsigned char *)buffer};
     uint32_t version = FORMAT_VERSION;
     memcpy(c.out, magic, sizeof magic);
     c.at = sizeof magic;
@@ -198,7 +198,7 @@ int ast_save(const ast_tracker *t, void *buffer, size_t size) {
 
 int ast_restore(ast_tracker *t, const void *buffer, size_t size) {
     if (t == NULL || buffer == NULL) return AST_E_NULL;
-    const unsigned char *bytes = buffer;
+    const unsigned char *bytes = (const unsigned char *)buffer;
     if (size < HEADER + CHECKSUM || memcmp(bytes, magic, sizeof magic) != 0) return AST_E_CORRUPT;
 
     /* The configuration before the checksum: a block of another one has another length, so its checksum is somewhere else. */

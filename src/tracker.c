@@ -72,7 +72,7 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     const size_t given = (size_t)cfg->history + 1; /* a start keeps the patches there, and the background's mean behind them */
     t->desk = ast_arena_take(arena, (size_t)cfg->threads, sizeof *t->desk);
     for (int w = 0; w < cfg->threads; w++)
-        desk_layout(t->desk != NULL ? &t->desk[w] : NULL, t, w == 0 && given > AST_TILE ? given : AST_TILE, arena);
+        desk_layout(t->desk != NULL ? &t->desk[w] : NULL, t, w == 0 && given > AST_TILE ? given : (size_t)AST_TILE, arena);
     t->workers = ast_workers_layout(cfg->threads, arena);
     t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
     t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
@@ -147,7 +147,8 @@ static ast_box window_of(const struct ast_tracker *t, const struct ast_state *st
 /* Shows the part of a frame around centres between (left, top) and (right, bottom), with room for the object's box at this scale and
  * for its surroundings, and prepares the features there. */
 static void look(struct ast_tracker *t, const ast_frame *frame, float left, float top, float right, float bottom, float scale) {
-    const float reach = 1.25f; /* boxes around a centre: half for the object, the rest for background */
+    /* Boxes around a centre: half for the object, the rest for larger candidates and for background. */
+    const float reach = t->cfg.background > 0 ? 1.25f : 0.75f;
     const float w = t->box_width * scale, h = t->box_height * scale;
     const ast_box object = {0.0f, 0.0f, w, h};
     const ast_box region = {left - reach * w, top - reach * h, right - left + 2.0f * reach * w, bottom - top + 2.0f * reach * h};
@@ -315,7 +316,7 @@ struct round {
 };
 
 static int score_part(void *shared, int worker, int part) {
-    const struct round *round = shared;
+    const struct round *round = (const struct round *)shared;
     struct ast_tracker *t = round->t;
     struct ast_desk *desk = &t->desk[worker];
     const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
@@ -347,7 +348,7 @@ static void look_at_cloud(struct ast_tracker *t, const ast_frame *frame) {
 
 /* What all candidates share: the first part is the frame that they show, the second what is known without it. */
 static int prepare_part(void *shared, int worker, int part) {
-    const struct round *round = shared;
+    const struct round *round = (const struct round *)shared;
     struct ast_tracker *t = round->t;
     (void)worker; /* the second part alone needs a desk, and takes the first */
     if (part == 0) {

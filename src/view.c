@@ -2,14 +2,18 @@
 
 #include "maths.h"
 
+/* Columns of the view that are made at a time. */
+enum { COLUMNS = 4 * AST_LANES };
+
 void ast_view_layout(struct ast_view *view, const ast_config *cfg, struct ast_arena *arena) {
     const size_t side = (size_t)cfg->view;
     view->side = cfg->view;
     view->object = cfg->view_object;
     if (view->side == 0) return;
     view->pixels = ast_arena_take(arena, side * side, sizeof *view->pixels);
-    view->rows = ast_arena_take(arena, side * AST_RESAMPLER_ROWS, sizeof *view->rows);
-    ast_resampler_layout(&view->resampler, view->side, view->side, arena);
+    const int columns = view->side < COLUMNS ? view->side : COLUMNS;
+    view->rows = ast_arena_take(arena, (size_t)columns * AST_RESAMPLER_ROWS, sizeof *view->rows);
+    ast_resampler_layout(&view->resampler, columns, arena);
 }
 
 static int within(float v, int low, int high) {
@@ -41,14 +45,17 @@ void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box 
     const int width = within(ast_ceilf((float)(right - left) / view->pixel), 1, view->side);
     const int height = within(ast_ceilf((float)(bottom - top) / view->pixel), 1, view->side);
     const ast_box window = {(float)left, (float)top, (float)width * view->pixel, (float)height * view->pixel};
-    ast_resampler_aim(&view->resampler, frame, &window, width, height);
-    for (int r = 0; r < height; r += AST_RESAMPLER_ROWS) {
-        const int rows = height - r < AST_RESAMPLER_ROWS ? height - r : AST_RESAMPLER_ROWS;
-        ast_resampler_rows(&view->resampler, frame, r, rows, view->rows, (size_t)view->side);
-        for (int k = 0; k < rows; k++) {
-            uint8_t *out = view->pixels + (size_t)(r + k) * (size_t)view->side;
-            const float *row = view->rows + (size_t)k * (size_t)view->side;
-            for (int c = 0; c < width; c++) out[c] = (uint8_t)within(row[c] + 0.5f, 0, 255);
+    for (int begin = 0; begin < width; begin += COLUMNS) {
+        const int columns = width - begin < COLUMNS ? width - begin : COLUMNS;
+        ast_resampler_aim_columns(&view->resampler, frame, &window, width, height, begin, columns);
+        for (int r = 0; r < height; r += AST_RESAMPLER_ROWS) {
+            const int rows = height - r < AST_RESAMPLER_ROWS ? height - r : AST_RESAMPLER_ROWS;
+            ast_resampler_rows(&view->resampler, frame, r, rows, view->rows, (size_t)columns);
+            for (int k = 0; k < rows; k++) {
+                uint8_t *out = view->pixels + (size_t)(r + k) * (size_t)view->side + begin;
+                const float *row = view->rows + (size_t)k * (size_t)columns;
+                for (int c = 0; c < columns; c++) out[c] = (uint8_t)within(row[c] + 0.5f, 0, 255);
+            }
         }
     }
     view->image.pixels = view->pixels;

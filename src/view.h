@@ -11,7 +11,7 @@ struct ast_view {
     int side;        /* most pixels in width and height; 0: views show the whole frame as it is */
     int object;      /* pixels that the geometric mean of the object's sides should take at most */
     uint8_t *pixels; /* side x side, when resampled */
-    float *rows;     /* AST_RESAMPLER_ROWS of side */
+    float *rows;     /* AST_RESAMPLER_ROWS of the columns made at a time */
     struct ast_resampler resampler;
     /* The current view: a point at p view pixels from its corner is at origin + p * pixel in the frame. */
     ast_frame image;

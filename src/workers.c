@@ -63,7 +63,7 @@ static void take_parts(struct ast_workers *w, int number) {
 }
 
 static void *serve(void *argument) {
-    struct ast_worker *self = argument;
+    struct ast_worker *self = (struct ast_worker *)argument;
     struct ast_workers *w = self->all;
     (void)pthread_mutex_lock(&w->lock);
     while (!w->ending) {

@@ -5,7 +5,7 @@
 #include "arena.h"
 
 /* A build without a heap has no threads either: making one takes memory from it. */
-#if defined(AST_NO_HEAP) && !defined(AST_NO_THREADS)
+#if (defined(AST_NO_HEAP) || defined(ARDUINO)) && !defined(AST_NO_THREADS)
 #define AST_NO_THREADS
 #endif
 

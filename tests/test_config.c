@@ -74,16 +74,18 @@ static void assert_refused(const ast_config *c, const char *name) {
 /* ---- Presets ---- */
 
 static void test_presets_are_valid_and_differ(void) {
-    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY};
-    ast_config made[3];
-    for (size_t p = 0; p < 3; p++) {
+    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY, AST_PRESET_COMPACT};
+    ast_config made[4];
+    for (size_t p = 0; p < 4; p++) {
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&made[p], presets[p]));
         TEST_ASSERT_EQUAL_UINT32(sizeof(ast_config), made[p].struct_size);
         assert_accepted(&made[p], "preset");
     }
     TEST_ASSERT_TRUE(memcmp(&made[0], &made[1], sizeof made[0]) != 0);
     TEST_ASSERT_TRUE(memcmp(&made[0], &made[2], sizeof made[0]) != 0);
+    TEST_ASSERT_TRUE(memcmp(&made[1], &made[3], sizeof made[0]) != 0);
     TEST_ASSERT_TRUE(ast_mem_size(&made[2]) < ast_mem_size(&made[0]) / 2);
+    TEST_ASSERT_TRUE(ast_mem_size(&made[3]) < ast_mem_size(&made[1]) / 2);
 }
 
 static void test_paper_preset_has_the_published_values(void) {
@@ -98,8 +100,8 @@ static void test_paper_preset_has_the_published_values(void) {
 
 /* Whatever was there: two fills of one preset agree in every field. */
 static void test_preset_fills_everything(void) {
-    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY};
-    for (size_t p = 0; p < 3; p++) {
+    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY, AST_PRESET_COMPACT};
+    for (size_t p = 0; p < 4; p++) {
         int32_t count = 0;
         const ast_config_field *fields = ast_config_fields(&count);
         ast_config zeros, sentinel;
@@ -115,7 +117,7 @@ static void test_preset_fills_everything(void) {
 }
 
 static void test_unknown_presets_are_refused(void) {
-    static const int unknown[] = {-1, 3, 99, INT_MIN, INT_MAX};
+    static const int unknown[] = {-1, 4, 99, INT_MIN, INT_MAX};
     const ast_config before = cfg;
     for (size_t p = 0; p < sizeof unknown / sizeof unknown[0]; p++) {
         TEST_ASSERT_EQUAL_INT(AST_E_RANGE, ast_config_preset(&cfg, unknown[p]));

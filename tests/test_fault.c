@@ -137,14 +137,14 @@ static void test_small_trackers(void) {
 
 /* At the sizes that are used, each step with a model due. The literal scoring makes calls for each candidate and model: fewer. */
 static void test_presets(void) {
-    static const char *const names[] = {"preset paper", "preset robust", "preset tiny", "preset paper, literal"};
-    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY, AST_PRESET_PAPER};
+    static const char *const names[] = {"preset paper", "preset robust", "preset compact", "preset tiny", "preset paper, literal"};
+    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_COMPACT, AST_PRESET_TINY, AST_PRESET_PAPER};
     for (int b = 0; b < BACKENDS; b++) {
-        for (int p = 0; p < 4; p++) {
+        for (int p = 0; p < 5; p++) {
             ast_config cfg;
             TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, presets[p]));
             cfg.bag_interval = 1;
-            if (p == 3) {
+            if (p == 4) {
                 cfg.scoring = AST_SCORING_LITERAL;
                 cfg.particles = 6;
             }

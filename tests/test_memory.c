@@ -131,9 +131,9 @@ static void test_nothing_is_allocated_after_init(void) {
 
 /* The presets' sizes: long vectors and wide products, for which a BLAS has other ways. */
 static void test_nothing_is_allocated_at_the_presets_sizes(void) {
-    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_TINY};
+    static const int presets[] = {AST_PRESET_PAPER, AST_PRESET_PAPER, AST_PRESET_ROBUST, AST_PRESET_COMPACT, AST_PRESET_TINY};
     for (int b = 0; b < BACKENDS; b++) {
-        for (int which = 0; which < 4; which++) {
+        for (int which = 0; which < 5; which++) {
             ast_config cfg;
             TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, presets[which]));
             if (which == 0) {
@@ -333,7 +333,10 @@ static void test_presets_keep_to_their_budgets(void) {
     static const struct {
         int preset;
         size_t bytes;
-    } budgets[] = {{AST_PRESET_PAPER, 512 * 1024}, {AST_PRESET_ROBUST, 1216 * 1024}, {AST_PRESET_TINY, 128 * 1024}};
+    } budgets[] = {{AST_PRESET_PAPER, 512 * 1024},
+                   {AST_PRESET_ROBUST, 1216 * 1024},
+                   {AST_PRESET_COMPACT, 512 * 1024},
+                   {AST_PRESET_TINY, 128 * 1024}};
     for (int b = 0; b < BACKENDS; b++) {
         for (size_t p = 0; p < sizeof budgets / sizeof budgets[0]; p++) {
             ast_config cfg;

@@ -22,14 +22,14 @@ static double expected[MOST_GRID];
 /* A resampler for grids of this size; extra: how much larger a grid it has room for. */
 static void lay_out(int width, int height, int extra) {
     struct ast_arena counted = {NULL, 0}, arena;
-    ast_resampler_layout(&resampler, width + extra, height + extra, &counted);
+    ast_resampler_layout(&resampler, width + extra, &counted);
     free(block);
     block = malloc(counted.used + AST_ALIGNMENT);
     TEST_ASSERT_NOT_NULL(block);
     memset(block, 0xff, counted.used + AST_ALIGNMENT); /* NaN */
     arena.base = ast_align(block);
     arena.used = 0;
-    ast_resampler_layout(&resampler, width + extra, height + extra, &arena);
+    ast_resampler_layout(&resampler, width + extra, &arena);
     TEST_ASSERT_EQUAL_UINT(counted.used, arena.used);
     grid_width = width;
     grid_height = height;
@@ -189,6 +189,25 @@ static void test_grids_smaller_than_the_resampler(void) {
         grid_height = 34 - side;
         assert_window(&frame, 21.4f, 13.7f, 36.2f, 29.1f);
     }
+}
+
+/* A grid made a few columns at a time, its rows in any order, is the grid made at once, bit for bit. */
+static void test_grid_made_in_parts(void) {
+    uint8_t pixels[80 * 60];
+    static float whole[48 * 40], parts[48 * 40];
+    const ast_frame frame = noise_frame(pixels, 80, 60, 80, 21);
+    const ast_box window = {-3.3f, 4.1f, 77.7f, 61.9f};
+    lay_out(48, 40, 0);
+    resample(&frame, &window, whole);
+    lay_out(7, 40, 0);
+    for (int begin = 0; begin < 48; begin += 7) {
+        const int count = 48 - begin < 7 ? 48 - begin : 7;
+        ast_resampler_aim_columns(&resampler, &frame, &window, 48, 40, begin, count);
+        for (int r = 39; r >= 0; r -= 3) ast_resampler_rows(&resampler, &frame, r, r < 39 ? 2 : 1, parts + r * 48 + begin, 48);
+        for (int r = 37; r >= 0; r -= 3) ast_resampler_rows(&resampler, &frame, r, 2, parts + r * 48 + begin, 48);
+    }
+    for (int i = 0; i < 48 * 40; i++) parts[i] /= 255.0f;
+    TEST_ASSERT_EQUAL_MEMORY(whole, parts, sizeof whole);
 }
 
 static void test_frame_of_one_pixel(void) {
@@ -386,6 +405,7 @@ int main(void) {
     RUN_TEST(test_borders_and_windows_outside);
     RUN_TEST(test_grids_of_all_shapes);
     RUN_TEST(test_grids_smaller_than_the_resampler);
+    RUN_TEST(test_grid_made_in_parts);
     RUN_TEST(test_frame_of_one_pixel);
     RUN_TEST(test_frame_of_one_long_row);
     RUN_TEST(test_frame_of_one_long_column);

@@ -189,11 +189,11 @@ static void test_pixels_are_the_resampled_window(void) {
     struct ast_resampler resampler;
     struct ast_arena counted = {NULL, 0}, arena = {NULL, 0};
     float line[SIDE];
-    ast_resampler_layout(&resampler, SIDE, SIDE, &counted);
+    ast_resampler_layout(&resampler, SIDE, &counted);
     unsigned char *memory = malloc(counted.used + AST_ALIGNMENT);
     TEST_ASSERT_NOT_NULL(memory);
     arena.base = ast_align(memory);
-    ast_resampler_layout(&resampler, SIDE, SIDE, &arena);
+    ast_resampler_layout(&resampler, SIDE, &arena);
     int resampled = 0;
     for (int trial = 0; trial < 40; trial++) {
         const ast_box region = random_region(&noise, &frame, 30, 500), object = random_region(&noise, &frame, 10, 200);

@@ -300,15 +300,6 @@ int program(void) {
     say_number(&line, (int32_t)record->boots + 1);
     say_end(&line);
     if (ast_config_preset(&cfg, AST_PRESET_TINY) != AST_OK) return 1;
-    /* What costs neither memory nor time, and a camera left to itself needs: to find again what it lost. */
-    cfg.keep_first = AST_YES;
-    cfg.guard = 0.6f;
-    cfg.reacquire = 0.6f;
-    cfg.lost_after = 2;
-    cfg.walk_y = 8.0f;
-    cfg.draws = AST_DRAWS_QUASI;
-    cfg.likelihood = AST_LIKELIHOOD_SCALED;
-    cfg.sigma = 0.1f;
     ast_tracker *t = begin(&cfg);
     if (t == NULL) return 1;
     if (record->boots == 0)

@@ -10,9 +10,10 @@ from asttrack import PRESETS, AstError, ErrorCode, Tracker, config_fields
 
 
 def test_presets_differ_and_all_start() -> None:
-    assert set(PRESETS) == {"paper", "robust", "tiny"}
+    assert set(PRESETS) == {"paper", "robust", "tiny", "compact"}
     sizes = {name: Tracker(name).memory_size for name in PRESETS}
     assert sizes["tiny"] < sizes["paper"] < sizes["robust"]
+    assert sizes["tiny"] < sizes["compact"] < sizes["robust"] / 2
     assert Tracker().config == Tracker("robust").config
 
 
@@ -94,7 +95,7 @@ def test_an_unknown_choice_lists_the_choices() -> None:
 
 
 def test_an_unknown_preset_or_colour_order_lists_them() -> None:
-    with pytest.raises(ValueError, match="preset must be one of 'paper', 'robust', 'tiny', not 'best'"):
+    with pytest.raises(ValueError, match="preset must be one of 'paper', 'robust', 'tiny', 'compact', not 'best'"):
         Tracker("best")
     with pytest.raises(ValueError, match="colour must be 'bgr' or 'rgb', not 'yuv'"):
         Tracker(colour="yuv")  # type: ignore[arg-type]

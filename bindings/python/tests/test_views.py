@@ -2,6 +2,7 @@
 
 import gc
 import tracemalloc
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,9 @@ from asttrack import Tracker, subspace_distance, subspace_fit
 from short_scene import BOXES, FRAMES
 
 
-def tracked(count: int = 12, preset: str = "tiny") -> Tracker:
+def tracked(count: int = 12, preset: str = "tiny", **config: Any) -> Tracker:
     """A tracker after `count` updates; patches that are not square, bag and history rings that have gone round."""
-    tracker = Tracker(preset, patch_width=12, patch_height=10, bag_interval=1, bag_size=4, particles=64)
+    tracker = Tracker(preset, patch_width=12, patch_height=10, bag_interval=1, bag_size=4, particles=64, **config)
     tracker.init(FRAMES[0], BOXES[0])
     for frame in FRAMES[1 : count + 1]:
         tracker.update(frame)
@@ -90,7 +91,7 @@ def test_what_has_no_patch_says_so() -> None:
 
 
 def test_the_bag_is_oldest_first_and_orthonormal() -> None:
-    tracker = tracked(9)
+    tracker = tracked(9, keep_first="no")
     before = [model.mean.copy() for model in tracker.bag]
     tracker.update(FRAMES[10])
     after = tracker.bag

@@ -12,7 +12,7 @@ MAX_FRAME: Final = 65535
 MAX_HISTORY: Final = 15
 MAX_BASIS: Final = 8
 
-PRESETS: Final = {"paper": 0, "robust": 1, "tiny": 2}
+PRESETS: Final = {"paper": 0, "robust": 1, "tiny": 2, "compact": 3}
 BASES: Final = {"centred": 0, "raw": 1}
 
 FIELD_INT: Final = 0

@@ -41,7 +41,7 @@ class Tracker:
     Pickling, `copy.copy` and `copy.deepcopy` take the configuration and the state along; the copy continues bit for bit.
 
     Args:
-        preset: "robust" (the default), "paper" (the publication) or "tiny" (microcontrollers).
+        preset: "robust" (the default), "paper" (the publication), "compact" (half a megabyte) or "tiny" (64 KiB).
         colour: order of the channels of colour frames: "bgr", as OpenCV reads them, or "rgb".
         **changes: configuration fields to change, by name: `particles=300, alpha=0.5, basis="raw"`. `config_fields()` lists them
             with their kinds and ranges; asttrack.h says what they mean.
