@@ -32,7 +32,6 @@ TERMS: dict[str, Callable[[Any], Floats]] = {
     "start": lambda row: row["start"],
     "-ln(spread + 0.01)": lambda row: -np.log(row["spread"] + 0.01),
     "inside": lambda row: row["inside"],
-    "-lately": lambda row: -row["lately"],
 }
 # Scores between which a float holds their log odds well.
 LEAST, MOST = 0.001, 0.999

@@ -21,7 +21,7 @@ __attribute__((constructor)) static void open_rows(void) {
     const char *path = getenv("AST_PREDICTORS");
     if (path == NULL) return;
     rows = fopen(path, "w");
-    require(rows != NULL && fprintf(rows, "start,spread,inside,lately,score\n") > 0, path);
+    require(rows != NULL && fprintf(rows, "start,spread,inside,score\n") > 0, path);
 }
 
 __attribute__((destructor)) static void close_rows(void) {
@@ -31,8 +31,8 @@ __attribute__((destructor)) static void close_rows(void) {
 float __wrap_ast_confidence_probability(const struct ast_evidence *evidence) {
     const float score = __real_ast_confidence_probability(evidence);
     if (rows != NULL)
-        require(fprintf(rows, "%.9g,%.9g,%.9g,%.9g,%.9g\n", (double)evidence->start, (double)evidence->spread,
-                        (double)evidence->inside, (double)evidence->lately, (double)score) > 0,
+        require(fprintf(rows, "%.9g,%.9g,%.9g,%.9g\n", (double)evidence->start, (double)evidence->spread, (double)evidence->inside,
+                        (double)score) > 0,
                 "AST_PREDICTORS");
     return score;
 }

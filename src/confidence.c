@@ -29,8 +29,7 @@ float ast_confidence_score(const float *patch, const float *anchor, const struct
 
 float ast_confidence_probability(const struct ast_evidence *evidence) {
     const float least = 0.01f; /* object sizes: a cloud narrower than that is sure, and its logarithm stays finite */
-    const float log_odds = 5.0f * evidence->start - 0.9f * ast_logf(evidence->spread + least) + 14.8f * evidence->inside -
-                           11.7f * evidence->lately - 16.3f;
+    const float log_odds = 5.0f * evidence->start - 0.96f * ast_logf(evidence->spread + least) + 14.6f * evidence->inside - 16.3f;
     return 1.0f / (1.0f + ast_expf(-log_odds));
 }
 

@@ -18,8 +18,7 @@ float ast_confidence_score(const float *patch, const float *anchor, const struct
 struct ast_evidence {
     float start;  /* cosine to the object's looks at the start, about the background's mean */
     float spread; /* of the cloud, object sizes */
-    float inside; /* share of the winner's box inside the frame */
-    float lately; /* share of the last frames, about a hundred, that were lost: what is found after a loss may be something else */
+    float inside; /* share of the winner's box inside the frame: a lost cloud mostly comes to rest at a border */
 };
 /* With a guard: the probability that the winner's box covers the object (overlap 0.2 at least), by a logistic regression over
  * sequences with ground truth, each with the same weight (`make calibrate`). 0 .. 1. */

@@ -7,8 +7,6 @@
 
 /* Rate of the running mean: about the last 20 trusted frames. */
 #define USUAL_RATE 0.05f
-/* Rate of the running mean of being lost: about the last 100 frames. */
-#define LATELY_RATE 0.01f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
 /* But an object whose likeness to the start is usually at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
@@ -24,7 +22,6 @@ void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start) {
     guard->usual.start = guard->usual.known = 0.0f;
     guard->low = 0;
     guard->lost = 0;
-    guard->lately = 0.0f;
     guard->good = *start;
 }
 
@@ -51,8 +48,8 @@ struct ast_resemblance ast_guard_resemblance(const float *vector, const float *a
     return found;
 }
 
-static float towards(float mean, float value, float rate) {
-    return mean + rate * (value - mean);
+static float towards(float mean, float value) {
+    return mean + USUAL_RATE * (value - mean);
 }
 
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
@@ -68,13 +65,12 @@ struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config 
         if (next.low < AST_GUARD_LONG) next.low++;
         next.lost = guard->lost || next.low >= cfg->lost_after;
     } else {
-        next.usual.start = towards(usual.start, resemblance->start, USUAL_RATE);
-        next.usual.known = towards(usual.known, resemblance->known, USUAL_RATE);
+        next.usual.start = towards(usual.start, resemblance->start);
+        next.usual.known = towards(usual.known, resemblance->known);
         next.low = 0;
         next.lost = 0;
         next.good = *estimate;
     }
-    next.lately = towards(guard->lately, (float)next.lost, LATELY_RATE);
     return next;
 }
 

@@ -24,7 +24,6 @@ struct ast_guard {
     struct ast_resemblance usual; /* running means over trusted frames; start 0 before the first */
     int32_t low;                  /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
     int32_t lost;                 /* 1: following and searching, without learning */
-    float lately;                 /* running mean of lost over about a hundred frames, 0 .. 1 */
     struct ast_state good;        /* the last trusted estimate */
 };
 

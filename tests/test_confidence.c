@@ -172,15 +172,14 @@ static void test_zero_thresholds_turn_it_off(void) {
 
 /* Each piece of evidence has a direction of its own, whatever the others say. */
 static void test_probability_follows_the_evidence(void) {
-    static const float better[][4] = {{0.1f, 0, 0, 0}, {0, -0.04f, 0, 0}, {0, 0, 0.1f, 0}, {0, 0, 0, -0.1f}};
-    for (int a = 0; a < 81; a++) {
+    static const float better[][3] = {{0.1f, 0, 0}, {0, -0.04f, 0}, {0, 0, 0.1f}};
+    for (int a = 0; a < 27; a++) {
         const struct ast_evidence seen = {-0.2f + 0.5f * (float)(a % 3), 0.05f + 0.4f * (float)(a / 3 % 3),
-                                          0.7f + 0.1f * (float)(a / 9 % 3), 0.1f + 0.2f * (float)(a / 27)};
+                                          0.7f + 0.1f * (float)(a / 9)};
         const float p = ast_confidence_probability(&seen);
         TEST_ASSERT_TRUE(p > 0.0f && p < 1.0f);
-        for (int b = 0; b < 4; b++) {
-            const struct ast_evidence more = {seen.start + better[b][0], seen.spread + better[b][1], seen.inside + better[b][2],
-                                              seen.lately + better[b][3]};
+        for (int b = 0; b < 3; b++) {
+            const struct ast_evidence more = {seen.start + better[b][0], seen.spread + better[b][1], seen.inside + better[b][2]};
             TEST_ASSERT_TRUE(ast_confidence_probability(&more) > p);
         }
     }
@@ -188,7 +187,7 @@ static void test_probability_follows_the_evidence(void) {
 
 /* The ends of the evidence give no infinity and no NaN. */
 static void test_probability_is_finite_at_the_ends(void) {
-    static const struct ast_evidence ends[] = {{1, 0, 1, 0}, {-1, 1e6f, 0, 1}, {-1, 0, 0, 1}, {1, 1e6f, 1, 0}};
+    static const struct ast_evidence ends[] = {{1, 0, 1}, {-1, 1e6f, 0}, {-1, 0, 0}, {1, 1e6f, 1}};
     for (int e = 0; e < 4; e++) {
         const float p = ast_confidence_probability(&ends[e]);
         TEST_ASSERT_TRUE(p >= 0.0f && p <= 1.0f);

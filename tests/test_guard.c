@@ -150,21 +150,6 @@ static void test_lost_after_refused_frames_until_both_likenesses_return(void) {
     TEST_ASSERT_EQUAL_INT(AST_TRACKING, ast_guard_status(&guard, &cfg, 1.0f));
 }
 
-static void test_lately_is_the_share_of_lost_frames(void) {
-    see(0.8f, 0.9f, 0.02f);
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, guard.lately);
-    for (int f = 0; f < 5000; f++) {
-        const float before = guard.lately;
-        see(0.1f, 0.2f, 0.3f);
-        TEST_ASSERT_TRUE(f == 0 ? guard.lately == 0.0f
-                                : guard.lately >= before && guard.lately <= 1.0f); /* lost from the second on */
-        if (f == 100) TEST_ASSERT_FLOAT_WITHIN(1e-3f, 1.0f - powf(0.99f, 100.0f), guard.lately);
-    }
-    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 1.0f, guard.lately);
-    for (int f = 0; f < 100; f++) see(0.8f, 0.9f, 0.02f);
-    TEST_ASSERT_FLOAT_WITHIN(2e-3f, powf(0.99f, 100.0f), guard.lately);
-}
-
 static void test_count_of_refused_frames_ends(void) {
     get_lost(AST_GUARD_LONG + 5);
     TEST_ASSERT_EQUAL_INT(AST_GUARD_LONG, guard.low);
@@ -239,7 +224,6 @@ int main(void) {
     RUN_TEST(test_only_a_frame_unlike_all_that_is_known_is_refused);
     RUN_TEST(test_usual_follows_slowly);
     RUN_TEST(test_lost_after_refused_frames_until_both_likenesses_return);
-    RUN_TEST(test_lately_is_the_share_of_lost_frames);
     RUN_TEST(test_count_of_refused_frames_ends);
     RUN_TEST(test_search_leaves_a_cloud_alone_until_lost);
     RUN_TEST(test_half_of_a_lost_cloud_searches_ever_wider);

@@ -27,8 +27,8 @@ def calibration() -> ModuleType:
 def frames(calibration: ModuleType, name: str, seed: int, count: int = 20000, unknown: float = 0) -> object:
     """Frames whose outcomes follow TRUE, scored by it, and by a predictor that nobody knows of."""
     chance = np.random.default_rng(seed)
-    start, known, spread = chance.uniform(0, 1, count), chance.uniform(0, 1, count), chance.exponential(0.1, count)
-    terms = np.column_stack([start, known, -np.log(spread + 0.01), np.ones(count)])
+    start, inside, spread = chance.uniform(0, 1, count), chance.uniform(0, 1, count), chance.exponential(0.1, count)
+    terms = np.column_stack([start, -np.log(spread + 0.01), inside, np.ones(count)])
     right = 1 / (1 + np.exp(-terms @ TRUE - unknown * chance.normal(size=count)))
     return calibration.Seen(name, terms, right, chance.uniform(size=count) > right)
 
