@@ -958,6 +958,7 @@ static void track_with_all(int kind, int normalisation, int frames) {
     cfg.model = kind == LINEAR ? AST_MODEL_LINEAR : AST_MODEL_AFFINE;
     cfg.normalisation = normalisation;
     cfg.bag_interval = 2;
+    cfg.guard = 0.0f; /* which would keep some frames from the bag */
     for (int i = 0; i < TRACKERS; i++) {
         ast_config own = cfg;
         own.scoring = i % WAYS == GRAM ? AST_SCORING_GRAM : AST_SCORING_LITERAL;

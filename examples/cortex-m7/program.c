@@ -177,7 +177,7 @@ static void survive(ast_tracker *t, enum camera_fault fault, const char *name, i
     camera_break(CAMERA_GOOD);
     for (int f = 0; f < FRAMES_TO_RECOVER && back < 3; f++, (*scene_frame)++) {
         sound = step(t, monitor, &result) && sound;
-        back = result.status == AST_TRACKING && is_near(&result.box, *scene_frame) ? back + 1 : 0;
+        back = result.status != AST_LOST && is_near(&result.box, *scene_frame) ? back + 1 : 0;
         if (back == 3) {
             say_text(&line, ", found again in frame ");
             say_number(&line, f + 1);
