@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "real.h"
+#include "support_watched.h"
 #include "unity.h"
 
 void setUp(void) {
@@ -96,8 +97,15 @@ struct twice {
     double from, to, bound;
 };
 
+/* What the reference itself may be off by, ulps: nothing that counts, but where long double has no more digits than double, as on some
+ * processors and under valgrind. */
+static double doubt(void) {
+    const volatile long double one = 1.0L, little = DBL_EPSILON / 4;
+    return one + little == one ? 1.0 : 0.0;
+}
+
 static void test_double_precision_keeps_its_bounds(void) {
-    enum { POINTS = 1000000 };
+    enum { POINTS = WATCHED ? 100000 : 1000000 };
     static const struct twice functions[] = {
         {"exp, results in the normal range", ast_exp_double, expl, -708.396, 709.782, 1.0},
         {"exp, small arguments", ast_exp_double, expl, -1.0, 1.0, 1.0},
@@ -121,7 +129,7 @@ static void test_double_precision_keeps_its_bounds(void) {
         (void)snprintf(text, sizeof text, "%s: %.3f ulps at %.17g, bound %.1f", functions[f].name, (double)worst, where,
                        functions[f].bound);
         puts(text);
-        TEST_ASSERT_TRUE_MESSAGE(worst <= (long double)functions[f].bound, text);
+        TEST_ASSERT_TRUE_MESSAGE(worst <= (long double)(functions[f].bound + doubt()), text);
         TEST_ASSERT_TRUE_MESSAGE(worst > 0.45L, "a function that is better than correctly rounded is not measured rightly");
     }
 }
