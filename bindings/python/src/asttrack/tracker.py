@@ -251,7 +251,8 @@ class Tracker:
             return buffer.raw
 
     def restore(self, state: bytes | bytearray | memoryview) -> None:
-        """Goes back to a state that `save` gave, of this tracker or of one with the same configuration (but for `scoring` and `threads`).
+        """Goes back to a state that `save` gave, of this tracker or of one with the same configuration
+        (but for `scoring` and `threads`).
 
         Raises:
             TypeError: not bytes.

@@ -145,7 +145,17 @@ def markdown_text(told: Conditions, notes: list[str], tables: list[tuple[str, Li
 
 def recovery_line(one: Recovery) -> list[object]:
     """A run through a scene, as RECOVERY_COLUMNS."""
-    return [one.event.kind, one.event.frames, int(one.event.met), one.scene, one.tracker, int(one.held), int(one.noticed), one.took, int(one.recovered)]
+    return [
+        one.event.kind,
+        one.event.frames,
+        int(one.event.met),
+        one.scene,
+        one.tracker,
+        int(one.held),
+        int(one.noticed),
+        one.took,
+        int(one.recovered),
+    ]
 
 
 def as_json(evaluation: Evaluation, compare: bool) -> dict[str, Any]:
