@@ -251,8 +251,9 @@ class Tracker:
             return buffer.raw
 
     def restore(self, state: bytes | bytearray | memoryview) -> None:
-        """Goes back to a state that `save` gave, of this tracker or of one with the same configuration
-        (but for `scoring` and `threads`).
+        """Goes back to a state that `save` gave.
+
+        It may be another tracker's of the same configuration, but for `scoring` and `threads`.
 
         Raises:
             TypeError: not bytes.
