@@ -454,14 +454,16 @@ lint: ## static analysis of the C sources
 	    -DAST_LINALG=ast_linalg_$(BACKEND) \
 	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
 
-# What reads the code rather than runs it, beside lint. cppcheck: each finding is an error; the functions of the API have no caller here.
+# What reads the code rather than runs it, beside lint. gcc's analyser takes a vector's elements for bits where it is shifted: that
+# warning is left to cppcheck and to gcc's own -Wshift-count-overflow. cppcheck: each finding is an error; the functions of the API have
+# no caller here.
 analyse: ## static analysis by gcc -fanalyzer and cppcheck
 	@$(CPPCHECK) --version >/dev/null || { echo "no $(CPPCHECK): on Debian, apt-get install cppcheck" >&2; exit 1; }
 	$(CPPCHECK) --quiet --std=c99 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -Iinclude -Isrc \
 	    -DAST_LINALG=ast_linalg_$(BACKEND) $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) -D_POSIX_C_SOURCE=200809L \
 	    --suppress=missingIncludeSystem $(lib_sources) examples/*.c
-	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/analyse CC=gcc CFLAGS='-O1 -fanalyzer' WERROR=1 LAPACKE=$(LAPACKE) \
-	    JPEG=$(JPEG) BACKEND=$(BACKEND) lib-static examples >/dev/null && echo "gcc -fanalyzer: nothing found"
+	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/analyse CC=gcc WERROR=1 LAPACKE=$(LAPACKE) \
+	    CFLAGS='-O1 -fanalyzer -Wno-analyzer-shift-count-overflow' JPEG=$(JPEG) BACKEND=$(BACKEND) lib-static examples >/dev/null && echo "gcc -fanalyzer: nothing found"
 
 # A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
 # valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long. valgrind does not know every
