@@ -25,6 +25,7 @@ static void track_both(const ast_config *cfg, const struct ast_linalg *la) {
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_start(plain, &frame, &box));
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_start(probed, &frame, &box));
     probe_scoring(&probe, probed);
+    double all_scored = 0;
     for (int f = 1; f <= FRAMES; f++) {
         ast_result one, other;
         box = render_path(&render, f, 32, 24, 0.2, 1.2);
@@ -40,11 +41,11 @@ static void track_both(const ast_config *cfg, const struct ast_linalg *la) {
         TEST_ASSERT_TRUE(sum > 0 && sum <= spent);
         /* Before there is a model, candidates are not scored: all is the last stage. */
         const double scored = probe.seconds[STAGE_PATCHES] + probe.seconds[STAGE_PRODUCT];
-        if (models == 0)
-            TEST_ASSERT_EQUAL_DOUBLE(0, scored);
-        else
-            TEST_ASSERT_TRUE(scored > 0);
+        if (models == 0) TEST_ASSERT_EQUAL_DOUBLE(0, scored);
+        TEST_ASSERT_TRUE(scored >= 0);
+        all_scored += scored;
     }
+    TEST_ASSERT_TRUE(all_scored > 0); /* of one small step nothing may be left once reading the clock is taken off */
     TEST_ASSERT_EQUAL_INT(cfg->bag_size, ast_bag_count(probed));
     struct saved state = saved_from(plain);
     saved_check(&state, probed, "the probed tracker's state");
