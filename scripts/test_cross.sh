@@ -26,7 +26,7 @@ case $extent in
 short)
     targets=("${targets[0]}" "${targets[1]}" "${targets[4]}")
     compilers=(gcc) optimisations=(-O3)
-    tests="test_config test_decision test_maths test_random test_resample"
+    tests="test_config test_decision test_random test_resample"
     ;;
 whole)
     compilers=(gcc clang) optimisations=(-O0 -O1 -O2 -O3)
