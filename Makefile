@@ -467,11 +467,13 @@ analyse: ## static analysis by gcc -fanalyzer and cppcheck
 
 # A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
 # valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long. valgrind does not know every
-# instruction of this very processor, for which the peaks of the bench are built.
+# instruction of this very processor, for which the peaks of the bench are built; a test's own malloc, which counts, is to be called.
+valgrind := valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite \
+	--soname-synonyms=somalloc=nouserintercepts
 memcheck: unity ## the C tests under valgrind, with the builtin backend
 	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) NATIVE=no BACKEND=builtin BUILDDIR=$(BUILDDIR)/memcheck CFLAGS='-O1 -g' \
 	    CPPFLAGS='$(CPPFLAGS) -DAST_TEST_VALGRIND' \
-	    AST_TEST_RUNNER='valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite' test-c
+	    AST_TEST_RUNNER='$(valgrind)' test-c
 
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)

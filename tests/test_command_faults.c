@@ -294,7 +294,7 @@ static void test_full_disk(void) {
     make_directory(at("@disk"));
     if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0)
         TEST_IGNORE_MESSAGE("no mount namespace may be made here: the full disk is left to /dev/full and the limit on file sizes");
-    (void)mount(NULL, "/", NULL, MS_REC | MS_PRIVATE, NULL);
+    (void)mount("none", "/", "none", MS_REC | MS_PRIVATE, NULL);
     if (mount("tmpfs", at("@disk"), "tmpfs", 0, "size=16k,nr_inodes=32") != 0)
         TEST_IGNORE_MESSAGE("no tmpfs may be mounted here: the full disk is left to /dev/full and the limit on file sizes");
     expect_nothing_written("@disk", "track @three --preset tiny --sheet @disk/sheet.ppm", NULL, strerror(ENOSPC));
