@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "support_noise.h"
 
@@ -87,6 +88,18 @@ ast_box render_path(const struct render *r, int frame, double w, double h, doubl
     const double x = r->width * (0.5 + reach * sin(turn)), y = r->height * (0.5 + reach * sin(2 * turn));
     const ast_box box = {(float)(x - 0.5 * w * scale), (float)(y - 0.5 * h * scale), (float)(w * scale), (float)(h * scale)};
     return box;
+}
+
+void render_film(uint8_t *film, ast_box *truth, int frames, int width, int height, double w, double h) {
+    struct render r;
+    const size_t size = (size_t)width * (size_t)height;
+    render_open(&r, width, height, 1);
+    for (int f = 0; f < frames; f++) {
+        truth[f] = render_path(&r, 2 * f, w, h, 0.15, 1.1);
+        const ast_frame frame = render_frame(&r, &truth[f]);
+        memcpy(film + (size_t)f * size, frame.pixels, size);
+    }
+    render_close(&r);
 }
 
 double box_distance(const ast_box *a, const ast_box *b) {

@@ -24,21 +24,8 @@ void tearDown(void) {
 /* ---- A sequence, rendered beforehand ---- */
 
 enum { FRAMES = 50, WIDTH = 64, HEIGHT = 48 };
-static uint8_t *film;
+static uint8_t film[FRAMES * WIDTH * HEIGHT];
 static ast_box truth[FRAMES];
-
-static void render_film(void) {
-    struct render scene;
-    film = malloc((size_t)FRAMES * WIDTH * HEIGHT);
-    if (film == NULL) exit(1);
-    render_open(&scene, WIDTH, HEIGHT, 1);
-    for (int f = 0; f < FRAMES; f++) {
-        truth[f] = render_path(&scene, 2 * f, 16, 12, 0.15, 1.1); /* 50 frames once around */
-        const ast_frame frame = render_frame(&scene, &truth[f]);
-        memcpy(film + (size_t)f * WIDTH * HEIGHT, frame.pixels, (size_t)WIDTH * HEIGHT);
-    }
-    render_close(&scene);
-}
 
 static ast_frame frame_at(int f) {
     const ast_frame frame = {film + (size_t)(f % FRAMES) * WIDTH * HEIGHT, WIDTH, HEIGHT, WIDTH};
@@ -483,7 +470,7 @@ static void test_threads_allocate_nothing(void) {
 
 int main(void) {
     allocations_watch();
-    render_film();
+    render_film(film, truth, FRAMES, WIDTH, HEIGHT, 16, 12);
     wait_for_quiet();
     UNITY_BEGIN();
     /* first, before a backend has been used for anything else */
@@ -503,6 +490,5 @@ int main(void) {
     RUN_TEST(test_memory_does_not_grow_with_particles_times_patch);
     RUN_TEST(test_largest_configuration_is_counted);
     RUN_TEST(test_threads_do_not_meet);
-    free(film);
     return UNITY_END();
 }

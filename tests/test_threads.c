@@ -18,21 +18,8 @@ void tearDown(void) {
 /* ---- A sequence, rendered beforehand ---- */
 
 enum { FRAMES = 12, WIDTH = 96, HEIGHT = 72, MOST_THREADS = 4 };
-static uint8_t *film;
+static uint8_t film[FRAMES * WIDTH * HEIGHT];
 static ast_box truth[FRAMES];
-
-static void render_film(void) {
-    struct render scene;
-    film = malloc((size_t)FRAMES * WIDTH * HEIGHT);
-    if (film == NULL) exit(1);
-    render_open(&scene, WIDTH, HEIGHT, 1);
-    for (int f = 0; f < FRAMES; f++) {
-        truth[f] = render_path(&scene, 2 * f, 24, 18, 0.15, 1.1);
-        const ast_frame frame = render_frame(&scene, &truth[f]);
-        memcpy(film + (size_t)f * WIDTH * HEIGHT, frame.pixels, (size_t)WIDTH * HEIGHT);
-    }
-    render_close(&scene);
-}
 
 static ast_frame frame_at(int f) {
     const ast_frame frame = {film + (size_t)f * WIDTH * HEIGHT, WIDTH, HEIGHT, WIDTH};
@@ -241,7 +228,7 @@ static void test_init_without_enough_threads(void) {
 
 int main(void) {
     if (backends_prepare() != 0) return 1;
-    render_film();
+    render_film(film, truth, FRAMES, WIDTH, HEIGHT, 24, 18);
     UNITY_BEGIN();
     RUN_TEST(test_every_number_of_threads_gives_the_bits_of_one);
     RUN_TEST(test_the_most_threads_with_one_particle);
@@ -249,6 +236,5 @@ int main(void) {
     RUN_TEST(test_exact_block);
     RUN_TEST(test_failing_backend_fails_the_step);
     RUN_TEST(test_init_without_enough_threads);
-    free(film);
     return UNITY_END();
 }
