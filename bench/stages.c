@@ -14,7 +14,7 @@ const char *stage_name(enum stage stage) {
 
 /* Ends a stage and begins the next. */
 static void mark(enum stage ended) {
-    const double now = clock_processor();
+    const double now = current->clock();
     current->seconds[ended] += now - current->mark - current->cost;
     current->mark = now;
 }
@@ -56,6 +56,7 @@ static int probed_tile(const union ast_scratch *scratch, union ast_tile_scratch 
 
 const struct ast_linalg *probe_linalg(struct probe *p, const struct ast_linalg *linalg) {
     p->linalg = linalg;
+    p->clock = clock_processor;
     p->cost = clock_processor_cost();
     p->probed_linalg = *linalg;
     return &p->probed_linalg;
@@ -72,7 +73,7 @@ void probe_scoring(struct probe *p, struct ast_tracker *t) {
 int probe_step(struct probe *p, struct ast_tracker *t, const ast_frame *frame, ast_result *result) {
     memset(p->seconds, 0, sizeof p->seconds);
     current = p;
-    p->mark = clock_processor();
+    p->mark = p->clock();
     const int error = ast_step(t, frame, result);
     mark(STAGE_DECISION);
     current = NULL;

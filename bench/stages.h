@@ -25,6 +25,7 @@ struct probe {
     const struct ast_scoring *scoring;
     struct ast_linalg probed_linalg; /* the copies */
     struct ast_scoring probed_scoring;
+    double (*clock)(void);  /* seconds; the processor's time unless it is replaced after probe_linalg */
     double seconds[STAGES]; /* of the last probe_step */
     double mark;            /* when the current stage began */
     double cost;            /* of reading the clock, seconds */
