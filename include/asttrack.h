@@ -127,6 +127,11 @@ enum {
     AST_LIKELIHOOD_FIXED = 0, /* exp(-dist / sigma): the paper's eq. 6 */
     AST_LIKELIHOOD_SCALED = 1 /* exp(-(dist - least) / (sigma (mean - least))): distances need no unit, so no scene to fit */
 };
+/* how much each model of the bag has to say about the particles */
+enum {
+    AST_VOTE_EQUAL = 0,   /* as much as any other: the paper's eq. 9 */
+    AST_VOTE_CONTRAST = 1 /* in proportion to mean - least of its distances: one that tells the particles apart says more */
+};
 /* switches */
 enum { AST_NO = 0, AST_YES = 1 };
 
@@ -180,12 +185,15 @@ typedef struct ast_config {
     float alpha;        /* weight of the Mahalanobis term, 0 .. 1e6 */
     float sigma;        /* scale of the likelihood, 1e-6 .. 1e6 */
     int32_t likelihood; /* AST_LIKELIHOOD_* */
+    int32_t vote;       /* AST_VOTE_* */
     int32_t scoring;    /* AST_SCORING_* */
 
     /* Guard: what the tracker learns from, and what it does when the object is gone */
-    float guard;  /* least likeness to the start, relative to the usual one, of a frame that is learned from, 0 .. 1; 0: no guard */
+    float guard;  /* least likeness to the start, relative to the lasting one, of a frame that is learned from, 0 .. 1; 0: no guard */
     float recall; /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
     float reacquire; /* least likeness to the start that ends AST_LOST, beside recall's, 0 .. 1 */
+    float
+        selective; /* with a guard and a full bag: least likeness to the start of a frame whose model takes another's place, 0 .. 1 */
 
     /* Confidence */
     float score_uncertain; /* below this score a frame is doubtful, 0 .. 1 */

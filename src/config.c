@@ -17,6 +17,7 @@ static const char *const basis_names[] = {"centred", "raw", NULL};
 static const char *const model_names[] = {"affine", "linear", NULL};
 static const char *const draws_names[] = {"random", "quasi", NULL};
 static const char *const likelihood_names[] = {"fixed", "scaled", NULL};
+static const char *const vote_names[] = {"equal", "contrast", NULL};
 static const char *const switch_names[] = {"no", "yes", NULL};
 static const char *const scoring_names[] = {"gram", "literal", NULL};
 
@@ -61,10 +62,12 @@ static const ast_config_field fields[] = {
     REAL(alpha, 0.0f, 1e6f),
     REAL(sigma, 1e-6f, 1e6f),
     CHOICE(likelihood, likelihood_names),
+    CHOICE(vote, vote_names),
     CHOICE(scoring, scoring_names),
     REAL(guard, 0.0f, 1.0f),
     REAL(recall, 0.0f, 1.0f),
     REAL(reacquire, 0.0f, 1.0f),
+    REAL(selective, 0.0f, 1.0f),
     REAL(score_uncertain, 0.0f, 1.0f),
     REAL(score_lost, 0.0f, 1.0f),
     INT(lost_after, 1, 10000),
@@ -113,10 +116,12 @@ static const ast_config paper = {
     .alpha = 0.64f,
     .sigma = 0.01f,
     .likelihood = AST_LIKELIHOOD_FIXED,
+    .vote = AST_VOTE_EQUAL,
     .scoring = AST_SCORING_GRAM,
     .guard = 0.0f,
     .recall = 0.75f,
     .reacquire = 0.65f,
+    .selective = 0.0f,
     .score_uncertain = 0.5f,
     .score_lost = 0.3f,
     .lost_after = 3,
@@ -159,10 +164,12 @@ static const ast_config robust = {
     .alpha = 10.0f,
     .sigma = 0.1f,
     .likelihood = AST_LIKELIHOOD_SCALED,
+    .vote = AST_VOTE_CONTRAST,
     .scoring = AST_SCORING_GRAM,
     .guard = 0.6f,
     .recall = 0.75f,
     .reacquire = 0.65f,
+    .selective = 0.85f,
     .score_uncertain = 0.5f,
     .score_lost = 0.3f,
     .lost_after = 2,

@@ -17,27 +17,41 @@ static int likelihoods(const struct ast_kernels *kernels, const float *distance,
     return used;
 }
 
+/* The least of a model's distances to the particles, and by how much their mean exceeds it. */
+static void summarise(const float *distance, int count, int models, int j, float *least, ast_real *contrast) {
+    ast_real mean = 0;
+    *least = distance[j];
+    for (int i = 0; i < count; i++) {
+        const float v = distance[(size_t)i * (size_t)models + (size_t)j];
+        if (v < *least) *least = v;
+        mean += (ast_real)v / (ast_real)count;
+    }
+    *contrast = mean - (ast_real)*least;
+}
+
 int ast_decide(const float *distance, int count, int models, const ast_config *cfg, float *weight) {
     const struct ast_kernels *kernels = ast_kernels();
     ast_real likelihood[BLOCK];
     for (int i = 0; i < count; i++) weight[i] = 0.0f;
+    float least;
+    ast_real contrast, votes = 0; /* all that the models have to say */
     for (int j = 0; j < models; j++) {
-        float least = distance[j];
-        for (int i = 1; i < count; i++) {
-            const float v = distance[(size_t)i * (size_t)models + (size_t)j];
-            if (v < least) least = v;
-        }
-        ast_real mean = 0;
-        for (int i = 0; i < count; i++) mean += (ast_real)distance[(size_t)i * (size_t)models + (size_t)j] / (ast_real)count;
+        summarise(distance, count, models, j, &least, &contrast);
+        votes += contrast;
+    }
+    const int equal = cfg->vote == AST_VOTE_EQUAL || !(votes > (ast_real)FLT_MIN);
+    for (int j = 0; j < models; j++) {
+        summarise(distance, count, models, j, &least, &contrast);
         ast_real scale = (ast_real)cfg->sigma;
-        if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= mean - (ast_real)least;
+        if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= contrast;
         const ast_real rate = scale > (ast_real)FLT_MIN ? 1 / scale : 0; /* all particles alike: all likelihoods too */
         ast_real sum = 0;
         for (int first = 0; first < count; first += BLOCK) {
             const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
             for (int i = 0; i < used; i++) sum += likelihood[i];
         }
-        const ast_real share = 1 / (sum * (ast_real)models);
+        const ast_real vote = equal ? 1 / (ast_real)models : contrast / votes;
+        const ast_real share = vote / sum;
         for (int first = 0; first < count; first += BLOCK) {
             const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
             for (int i = 0; i < used; i++) weight[first + i] += (float)(share * likelihood[i]);

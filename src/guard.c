@@ -7,6 +7,11 @@
 
 /* Rate of the running mean: about the last 20 trusted frames. */
 #define USUAL_RATE 0.05f
+/* Of the lasting mean, where it falls: the last 50 frames, or a third of all there were while these are fewer. An object is never again
+ * as like its looks at the start as in the first frames, and that says nothing. */
+#define LASTING_RATE 0.02f
+#define EARLY_FRAMES 3.0f
+#define EARLY_RATE 0.5f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
 /* But an object whose likeness to the start is usually at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
@@ -20,6 +25,8 @@
 
 void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start) {
     guard->usual.start = guard->usual.known = 0.0f;
+    guard->lasting = guard->usual;
+    guard->trusted = 0;
     guard->low = 0;
     guard->lost = 0;
     guard->good = *start;
@@ -48,30 +55,45 @@ struct ast_resemblance ast_guard_resemblance(const float *vector, const float *a
     return found;
 }
 
-static float towards(float mean, float value) {
-    return mean + USUAL_RATE * (value - mean);
+static float towards(float mean, float value, float rate) {
+    return mean + rate * (value - mean);
+}
+
+static float slowly_towards(float mean, float value, int32_t frames) {
+    float rate = EARLY_FRAMES / (float)frames;
+    if (rate < LASTING_RATE) rate = LASTING_RATE;
+    if (value > mean && rate < USUAL_RATE) rate = USUAL_RATE;
+    return towards(mean, value, rate < EARLY_RATE ? rate : EARLY_RATE);
 }
 
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                                 const struct ast_resemblance *resemblance, float spread) {
     struct ast_guard next = *guard;
-    const struct ast_resemblance usual = guard->usual.start > 0.0f ? guard->usual : *resemblance;
+    const struct ast_resemblance usual = guard->trusted > 0 ? guard->usual : *resemblance;
+    const struct ast_resemblance lasting = guard->trusted > 0 ? guard->lasting : *resemblance;
     const int unknown = resemblance->known < cfg->recall * usual.known;
-    const int vanished = usual.start > FAITHFUL && resemblance->known < VANISHED * usual.known;
+    const int vanished = lasting.start > FAITHFUL && resemblance->known < VANISHED * lasting.known;
     const int doubtful = guard->lost
-                             ? unknown || resemblance->start < cfg->reacquire * usual.start
-                             : unknown && resemblance->start < cfg->guard * usual.start && (spread > DECIDED_SPREAD || vanished);
+                             ? unknown || resemblance->start < cfg->reacquire * lasting.start
+                             : unknown && resemblance->start < cfg->guard * lasting.start && (spread > DECIDED_SPREAD || vanished);
     if (doubtful) {
         if (next.low < AST_GUARD_LONG) next.low++;
         next.lost = guard->lost || next.low >= cfg->lost_after;
     } else {
-        next.usual.start = towards(usual.start, resemblance->start);
-        next.usual.known = towards(usual.known, resemblance->known);
+        if (next.trusted < AST_GUARD_LONG) next.trusted++;
+        next.usual.start = towards(usual.start, resemblance->start, USUAL_RATE);
+        next.usual.known = towards(usual.known, resemblance->known, USUAL_RATE);
+        next.lasting.start = slowly_towards(lasting.start, resemblance->start, next.trusted);
+        next.lasting.known = slowly_towards(lasting.known, resemblance->known, next.trusted);
         next.low = 0;
         next.lost = 0;
         next.good = *estimate;
     }
     return next;
+}
+
+int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance) {
+    return resemblance->start >= cfg->selective * guard->usual.start;
 }
 
 void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud) {

@@ -21,10 +21,12 @@ struct ast_resemblance {
 };
 
 struct ast_guard {
-    struct ast_resemblance usual; /* running means over trusted frames; start 0 before the first */
-    int32_t low;                  /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
-    int32_t lost;                 /* 1: following and searching, without learning */
-    struct ast_state good;        /* the last trusted estimate */
+    struct ast_resemblance usual;   /* running means over trusted frames; start 0 before the first */
+    struct ast_resemblance lasting; /* the same, but slow to fall: what covers the object little by little does not become usual */
+    int32_t trusted;                /* frames that these are means of, at most AST_GUARD_LONG */
+    int32_t low;                    /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
+    int32_t lost;                   /* 1: following and searching, without learning */
+    struct ast_state good;          /* the last trusted estimate */
 };
 
 /* Nothing seen yet but the start's estimate. */
@@ -35,11 +37,14 @@ float ast_guard_likeness(const float *vector, const float *other, const float *o
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
 /* The guard after a frame whose winner resembles so and whose cloud has this spread (object sizes). A frame is not trusted when its
- * likeness to the start falls below cfg->guard of the usual and that to what is known below cfg->recall, while the cloud is undecided
- * or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire and
- * cfg->recall of the usual. */
+ * likeness to the start falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud
+ * is undecided or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire
+ * of the lasting and cfg->recall of the usual. */
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                                 const struct ast_resemblance *resemblance, float spread);
+/* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual. What slowly
+ * covers an object would else replace all that is known of it, one frame hardly unlike the last. */
+int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance);
 /* While lost, half of the particles go on following what was likeliest, since it may still be the object in a new guise; the other
  * half searches around the last trusted estimate. This gives the searchers their place, before the walk; */
 void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud);

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define FORMAT_VERSION 2u
+#define FORMAT_VERSION 3u
 #define SHARE_LIMIT 1.0001f /* of a weight or a likeness: 1 and its rounding */
 #define POSITION_LIMIT 1e6f /* pixels: beyond any centre that a legal start or step can give */
 #define VALUE_LIMIT 1e6f    /* beyond any element of a vector or a basis, which weights keep below 100; distances stay finite */
@@ -100,6 +100,9 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
 
     code_float(c, &t->guard.usual.start, -SHARE_LIMIT, SHARE_LIMIT);
     code_float(c, &t->guard.usual.known, -SHARE_LIMIT, SHARE_LIMIT);
+    code_float(c, &t->guard.lasting.start, -SHARE_LIMIT, SHARE_LIMIT);
+    code_float(c, &t->guard.lasting.known, -SHARE_LIMIT, SHARE_LIMIT);
+    code_int32(c, &t->guard.trusted, 0, AST_GUARD_LONG);
     code_int32(c, &t->guard.low, 0, AST_GUARD_LONG);
     code_int32(c, &t->guard.lost, 0, 1);
     code_float(c, &t->guard.good.x, -limit, limit);
@@ -169,7 +172,7 @@ size_t ast_save_size(const ast_config *cfg) {
     if (ast_config_check(cfg, NULL) != AST_OK) return 0;
     const size_t dim = (size_t)ast_features_length(cfg), k = (size_t)cfg->bag_size;
     const size_t background = cfg->background > 0 ? (size_t)cfg->background + 1 : 0;
-    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 7 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
+    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 10 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
     const size_t vectors = (size_t)cfg->history + k * ((size_t)cfg->basis_size + 1) + 1 + background;
     struct codec c = {.mode = CODEC_COUNT, .at = HEADER};
     visit_config(&c, cfg);

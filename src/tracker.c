@@ -425,10 +425,12 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     struct ast_guard guard = t->guard;
     struct ast_confidence confidence;
     float score;
+    int selected = 1; /* fit to take an older model's place */
     if (t->cfg.guard > 0.0f) {
         const struct ast_resemblance resemblance =
             ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
         const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
+        selected = t->bag.count < t->bag.capacity || ast_guard_selects(&t->guard, &t->cfg, &resemblance);
         guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
         const struct ast_evidence evidence = {resemblance.start, spread, ast_frame_share(frame, &found_box)};
         score = ast_confidence_probability(&evidence);
@@ -440,7 +442,8 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     }
     const int trusted = guard.low == 0;
     const int first_model = t->bag.count == 0 && t->history.count + 1 == t->cfg.history;
-    const int model_due = trusted && (first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval));
+    const int model_due =
+        trusted && selected && (first_model || (t->bag.count > 0 && t->since_model + 1 >= (uint32_t)t->cfg.bag_interval));
     int rank = 0;
     if (model_due) error = fit_winner(t, vector, &rank);
     if (error != AST_OK) return error;

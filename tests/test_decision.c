@@ -27,9 +27,9 @@ static ast_config configured(int likelihood, float sigma) {
 }
 
 /* Equations 6 to 9 of the paper with each model's distances shifted by their least, which cancels in the normalisation; the scaled
- * likelihood's sigma is in units of the mean of the shifted distances. */
+ * likelihood's sigma is in units of the mean of the shifted distances, and so is a vote by contrast. */
 static void reference(int count, int models, const ast_config *cfg) {
-    double total = 0;
+    double total = 0, votes = 0;
     for (int i = 0; i < count; i++) expected[i] = 0;
     for (int j = 0; j < models; j++) {
         double least = INFINITY, sum = 0, mean = 0, sigma = (double)cfg->sigma;
@@ -37,18 +37,20 @@ static void reference(int count, int models, const ast_config *cfg) {
         for (int i = 0; i < count; i++) mean += ((double)distance[i * models + j] - least) / count;
         if (cfg->likelihood == AST_LIKELIHOOD_SCALED) sigma *= mean > 0 ? mean : 1;
         for (int i = 0; i < count; i++) sum += exp((least - (double)distance[i * models + j]) / sigma);
-        for (int i = 0; i < count; i++) expected[i] += exp((least - (double)distance[i * models + j]) / sigma) / sum;
+        const double vote = cfg->vote == AST_VOTE_CONTRAST ? mean : 1;
+        votes += vote;
+        for (int i = 0; i < count; i++) expected[i] += vote * exp((least - (double)distance[i * models + j]) / sigma) / sum;
     }
+    TEST_ASSERT_TRUE(votes > 0);
     for (int i = 0; i < count; i++) total += expected[i];
     for (int i = 0; i < count; i++) expected[i] /= total;
 }
 
-static int decide_and_compare_as(int count, int models, int likelihood, float sigma) {
-    const ast_config cfg = configured(likelihood, sigma);
+static int decide_and_compare_by(int count, int models, const ast_config *cfg) {
     for (int i = 0; i < count; i++) weight[i] = NAN; /* what was there counts for nothing */
-    const int best = ast_decide(distance, count, models, &cfg, weight);
+    const int best = ast_decide(distance, count, models, cfg, weight);
     double sum = 0;
-    reference(count, models, &cfg);
+    reference(count, models, cfg);
     for (int i = 0; i < count; i++) {
         TEST_ASSERT_TRUE(weight[i] >= 0.0f && weight[i] <= 1.000001f);
         TEST_ASSERT_DOUBLE_WITHIN(2e-6 * expected[i] + 1e-37, expected[i], (double)weight[i]);
@@ -57,6 +59,11 @@ static int decide_and_compare_as(int count, int models, int likelihood, float si
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0, sum);
     for (int i = 0; i < count; i++) TEST_ASSERT_TRUE(weight[i] < weight[best] || (weight[i] == weight[best] && i >= best));
     return best;
+}
+
+static int decide_and_compare_as(int count, int models, int likelihood, float sigma) {
+    const ast_config cfg = configured(likelihood, sigma);
+    return decide_and_compare_by(count, models, &cfg);
 }
 
 static int decide_and_compare(int count, int models, float sigma) {
@@ -126,6 +133,39 @@ static void test_models_have_equal_votes(void) {
     TEST_ASSERT_EQUAL_INT(1, decide_and_compare(3, 2, 0.1f));
 }
 
+/* Two models of the same shape, one of them with four times the contrast: by contrast it decides, by equal votes it is a tie. */
+static void test_a_vote_by_contrast_is_as_large_as_the_contrast(void) {
+    static const float unequal[] = {0.0f, 4.0f, 1.0f, 0.0f, 1.0f, 4.0f, 1.0f, 4.0f};
+    ast_config cfg = configured(AST_LIKELIHOOD_SCALED, 0.01f);
+    for (int i = 0; i < 8; i++) distance[i] = unequal[i];
+    TEST_ASSERT_EQUAL_INT(0, decide_and_compare_by(4, 2, &cfg));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.5f, weight[0]);
+    cfg.vote = AST_VOTE_CONTRAST;
+    TEST_ASSERT_EQUAL_INT(1, decide_and_compare_by(4, 2, &cfg));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.8f, weight[1]);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.2f, weight[0]);
+    /* One that prefers nobody has nothing to say, and where none has, all particles are alike. */
+    for (int i = 0; i < 4; i++) distance[2 * i + 1] = 7.0f;
+    TEST_ASSERT_EQUAL_INT(0, decide_and_compare_by(4, 2, &cfg));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 1.0f, weight[0]);
+    for (int i = 0; i < 8; i++) distance[i] = 7.0f;
+    TEST_ASSERT_EQUAL_INT(0, ast_decide(distance, 4, 2, &cfg, weight));
+    for (int i = 0; i < 4; i++) TEST_ASSERT_FLOAT_WITHIN(1e-7f, 0.25f, weight[i]);
+}
+
+static void test_votes_by_contrast(void) {
+    struct noise noise = {6};
+    for (int likelihood = AST_LIKELIHOOD_FIXED; likelihood <= AST_LIKELIHOOD_SCALED; likelihood++) {
+        ast_config cfg = configured(likelihood, 0.1f);
+        cfg.vote = AST_VOTE_CONTRAST;
+        for (int models = 1; models <= 18; models += 17) {
+            noise_fill(&noise, distance, (size_t)(350 * models), 0.0, 2.0);
+            for (int i = 0; i < 350; i++) distance[i * models] *= 0.1f;
+            (void)decide_and_compare_by(350, models, &cfg);
+        }
+    }
+}
+
 static void test_shift_of_a_model_changes_nothing(void) {
     struct noise noise = {3};
     float before[50];
@@ -180,6 +220,8 @@ int main(void) {
     RUN_TEST(test_scaled_likelihood_of_equal_distances);
     RUN_TEST(test_nearest_particle_wins);
     RUN_TEST(test_models_have_equal_votes);
+    RUN_TEST(test_a_vote_by_contrast_is_as_large_as_the_contrast);
+    RUN_TEST(test_votes_by_contrast);
     RUN_TEST(test_shift_of_a_model_changes_nothing);
     RUN_TEST(test_lowest_index_wins_a_tie);
     RUN_TEST(test_one_particle_has_all_the_weight);

@@ -27,6 +27,7 @@ void setUp(void) {
     cfg.guard = 0.6f;
     cfg.recall = 0.75f;
     cfg.reacquire = 0.65f;
+    cfg.selective = 0.85f;
     cfg.lost_after = 2;
     cfg.walk_x = 8.0f;
     cfg.walk_y = 4.0f;
@@ -111,14 +112,17 @@ static void test_only_a_frame_unlike_all_that_is_known_is_refused(void) {
     see(0.2f, 0.3f, 0.05f); /* nothing of it is left: however sure the cloud is, that is something else */
     TEST_ASSERT_EQUAL_INT(1, guard.low);
     guard = before;
-    guard.usual.start = 0.4f; /* unless its looks have long been other ones than at the start */
+    guard.lasting.start = 0.4f; /* unless its looks have long been other ones than at the start */
     see(0.1f, 0.3f, 0.05f);
     TEST_ASSERT_EQUAL_INT(0, guard.low);
     guard = before;
     see(0.2f, 0.3f, 0.3f);
     TEST_ASSERT_EQUAL_INT(1, guard.low);
     TEST_ASSERT_EQUAL_INT(0, guard.lost);
-    TEST_ASSERT_EQUAL_MEMORY(&before.usual, &guard.usual, sizeof before.usual); /* nothing is learned, not even what is usual */
+    /* nothing is learned, not even what is usual */
+    TEST_ASSERT_EQUAL_MEMORY(&before.usual, &guard.usual, sizeof before.usual);
+    TEST_ASSERT_EQUAL_MEMORY(&before.lasting, &guard.lasting, sizeof before.lasting);
+    TEST_ASSERT_EQUAL_INT(before.trusted, guard.trusted);
     TEST_ASSERT_EQUAL_MEMORY(&before.good, &guard.good, sizeof before.good);
     see(0.7f, 0.8f, 0.3f);
     TEST_ASSERT_EQUAL_INT(0, guard.low);
@@ -130,6 +134,53 @@ static void test_usual_follows_slowly(void) {
     TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.79f, guard.usual.start); /* a twentieth of the way */
     TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.795f, guard.usual.known);
     TEST_ASSERT_EQUAL_FLOAT(seen.x, guard.good.x);
+}
+
+/* How many frames of a likeness bring the lasting mean from 0.8 half the way to it. */
+static int frames_half_way(int frames_before, float likeness) {
+    int frames = 0;
+    ast_guard_clear(&guard, &start);
+    for (int f = 0; f < frames_before; f++) see(0.8f, 0.8f, 0.02f);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, 0.8f, guard.lasting.start);
+    while (fabsf(guard.lasting.start - likeness) > 0.5f * fabsf(0.8f - likeness)) {
+        see(likeness, 0.8f, 0.02f);
+        frames++;
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, 0.8f, guard.lasting.known); /* each for itself */
+    return frames;
+}
+
+static void test_the_lasting_mean_falls_slower_than_it_rises(void) {
+    TEST_ASSERT_EQUAL_INT(35, frames_half_way(1000, 0.6f)); /* .98^35 = .49 */
+    TEST_ASSERT_EQUAL_INT(14, frames_half_way(1000, 0.9f)); /* .95^14 = .49 */
+    /* The first frames are always like the start, which says nothing of what will last. */
+    TEST_ASSERT_TRUE(frames_half_way(1, 0.6f) <= 2);
+    TEST_ASSERT_TRUE(frames_half_way(20, 0.6f) < 14);
+}
+
+/* Leaves close over the object within some forty frames, each hardly unlike the last, and the cloud stays sure of what it sees. */
+static void test_what_is_covered_little_by_little_is_lost_in_the_end(void) {
+    for (int f = 0; f < 300; f++) see(0.8f, 0.9f, 0.03f);
+    float covered = 0.0f;
+    int frames = 0;
+    while (!guard.lost && frames < 80) {
+        frames++;
+        if (covered < 0.8f) covered += 0.02f;
+        see(0.8f * (1.0f - covered), 0.9f * (1.0f - covered), 0.03f);
+    }
+    TEST_ASSERT_EQUAL_INT(1, guard.lost);
+    TEST_ASSERT_FLOAT_WITHIN(0.15f, 0.75f, covered);
+    TEST_ASSERT_TRUE(guard.lasting.start > guard.usual.start);
+    TEST_ASSERT_TRUE(guard.lasting.start > 0.6f);
+}
+
+static void test_only_what_is_like_the_start_takes_a_place(void) {
+    const struct ast_resemblance like = {0.69f, 0.2f}, unlike = {0.67f, 0.99f};
+    for (int f = 0; f < 5; f++) see(0.8f, 0.9f, 0.02f);
+    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &like));
+    TEST_ASSERT_FALSE(ast_guard_selects(&guard, &cfg, &unlike));
+    cfg.selective = 0.0f;
+    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &unlike));
 }
 
 static void test_lost_after_refused_frames_until_both_likenesses_return(void) {
@@ -223,6 +274,9 @@ int main(void) {
     RUN_TEST(test_known_is_the_likest_of_start_and_models);
     RUN_TEST(test_only_a_frame_unlike_all_that_is_known_is_refused);
     RUN_TEST(test_usual_follows_slowly);
+    RUN_TEST(test_the_lasting_mean_falls_slower_than_it_rises);
+    RUN_TEST(test_what_is_covered_little_by_little_is_lost_in_the_end);
+    RUN_TEST(test_only_what_is_like_the_start_takes_a_place);
     RUN_TEST(test_lost_after_refused_frames_until_both_likenesses_return);
     RUN_TEST(test_count_of_refused_frames_ends);
     RUN_TEST(test_search_leaves_a_cloud_alone_until_lost);

@@ -129,7 +129,7 @@ static void test_format_is_as_documented(void) {
     ast_tracker *t = tracker_after(&cfg, 3);
     struct saved saved = saved_from(t), copy = saved_from(t);
     TEST_ASSERT_EQUAL_MEMORY("ASTSTATE", saved.bytes, 8);
-    TEST_ASSERT_EQUAL_UINT32(2, get_word(saved.bytes + VERSION_AT));
+    TEST_ASSERT_EQUAL_UINT32(3, get_word(saved.bytes + VERSION_AT));
     TEST_ASSERT_EQUAL_UINT32(cfg.particles, get_word(saved.bytes + CONFIG_AT)); /* the first field */
     TEST_ASSERT_EQUAL_UINT32(3, get_word(saved.bytes + state_at()));            /* frames since the start */
     sign(&copy);
@@ -486,10 +486,14 @@ static void test_values_out_of_range_are_rejected(void) {
         {"too many low frames", confidence + 1, 0, cfg.lost_after, cfg.lost_after + 1},
         {"usual likeness to the start above 1", confidence + 2, 1, 1, 1.1},
         {"usual likeness to what is known above 1", confidence + 3, 1, 1, 1.1},
-        {"negative count of refused frames", confidence + 4, 0, 5, -1},
-        {"neither lost nor not", confidence + 5, 0, 1, 2},
-        {"last good place far away", confidence + 6, 1, 30, -1e30},
-        {"last good scale 0", confidence + 8, 1, 1, 0},
+        {"lasting likeness to the start below -1", confidence + 4, 1, -1, -1.1},
+        {"lasting likeness to what is known above 1", confidence + 5, 1, 1, 1.1},
+        {"negative count of trusted frames", confidence + 6, 0, 10000, -1},
+        {"more trusted frames than are counted", confidence + 6, 0, 0, 10001},
+        {"negative count of refused frames", confidence + 7, 0, 5, -1},
+        {"neither lost nor not", confidence + 8, 0, 1, 2},
+        {"last good place far away", confidence + 9, 1, 30, -1e30},
+        {"last good scale 0", confidence + 11, 1, 1, 0},
         {"particle's scale 0", cloud + 2 * n, 1, 1, 0},
         {"negative weight", cloud + 3 * n, 1, 0.5, -0.01},
         {"weight above 1", cloud + 3 * n, 1, 0.5, 1.01},
@@ -668,7 +672,7 @@ static void test_every_other_configuration_is_a_mismatch(void) {
 }
 
 static void test_unknown_version_is_a_mismatch(void) {
-    static const uint32_t versions[] = {0, 1, 3, 0x01000000u, 0xffffffffu};
+    static const uint32_t versions[] = {0, 1, 2, 4, 0x01000000u, 0xffffffffu};
     const ast_config cfg = smallest_config();
     ast_tracker *t = tracker_after(&cfg, 4);
     struct saved before = saved_from(t), block = saved_from(t);

@@ -264,6 +264,48 @@ static void test_status_tells_when_the_object_is_gone(void) {
     ast_free(t);
 }
 
+/* A full bag keeps what it knows of the object against a frame that is not like it, though the guard trusts the frame; one with room left
+ * takes all that is trusted. */
+static void test_a_full_bag_is_selective(void) {
+    enum { BEFORE = 12, AFTER = 9 };
+    static const float selective[] = {0.0f, 0.85f};
+    const ast_box still = truth(0);
+    for (int room = 0; room <= 1; room++) {
+        for (int s = 0; s < 2; s++) {
+            ast_config cfg = small_robust_config();
+            cfg.guard = 0.6f;
+            cfg.recall = 0.0f; /* nothing is refused */
+            cfg.selective = selective[s];
+            if (room) cfg.bag_size = 30;
+            ast_tracker *t = tracker_new(&cfg, backends[0]);
+            start(t);
+            for (int f = 1; f < BEFORE; f++) {
+                const ast_frame frame = render_frame(&scene, &still);
+                TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, NULL));
+            }
+            TEST_ASSERT_EQUAL_INT(!room, t->bag.count == t->bag.capacity);
+            const size_t bytes = (size_t)t->bag.capacity * ((size_t)t->bag.n + 1) * (size_t)t->bag.stride * sizeof(float);
+            const int32_t count = t->bag.count;
+            float *known = malloc(bytes);
+            TEST_ASSERT_NOT_NULL(known);
+            memcpy(known, ast_bag_basis(&t->bag, 0), bytes);
+            struct render other;
+            render_open(&other, WIDTH, HEIGHT, 77);
+            for (int f = 0; f < AFTER; f++) {
+                ast_result r;
+                const ast_frame frame = render_frame(&other, &still);
+                TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, &r));
+                TEST_ASSERT_TRUE(t->guard.low == 0); /* trusted */
+            }
+            const int kept = memcmp(known, ast_bag_basis(&t->bag, 0), bytes) == 0 && t->bag.count == count;
+            TEST_ASSERT_EQUAL_INT(!room && s == 1, kept);
+            render_close(&other);
+            free(known);
+            ast_free(t);
+        }
+    }
+}
+
 /* ---- The stages, from what may be looked at ---- */
 
 /* The patch of a particle or a box, by a sampler that is not the tracker's. */
@@ -989,6 +1031,7 @@ int main(void) {
     RUN_TEST(test_scale_is_followed);
     RUN_TEST(test_light_does_not_matter);
     RUN_TEST(test_status_tells_when_the_object_is_gone);
+    RUN_TEST(test_a_full_bag_is_selective);
     RUN_TEST(test_distances_before_the_first_model);
     RUN_TEST(test_distances_are_those_of_the_geometry);
     RUN_TEST(test_history_holds_the_last_winners);
