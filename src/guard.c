@@ -7,11 +7,10 @@
 
 /* Rate of the running mean: about the last 20 trusted frames. */
 #define USUAL_RATE 0.05f
-/* Of the lasting mean, where it falls: the last 50 frames, or a third of all there were while these are fewer. An object is never again
- * as like its looks at the start as in the first frames, and that says nothing. */
+/* Of the lasting mean, where it falls: the last 50 frames; at first a third of all there were, so that it begins as the usual one. An
+ * object is never again as like its looks at the start as in the first frames, and that says nothing. */
 #define LASTING_RATE 0.02f
 #define EARLY_FRAMES 3.0f
-#define EARLY_RATE 0.5f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
 /* But an object whose likeness to the start is usually at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
@@ -62,8 +61,7 @@ static float towards(float mean, float value, float rate) {
 static float slowly_towards(float mean, float value, int32_t frames) {
     float rate = EARLY_FRAMES / (float)frames;
     if (rate < LASTING_RATE) rate = LASTING_RATE;
-    if (value > mean && rate < USUAL_RATE) rate = USUAL_RATE;
-    return towards(mean, value, rate < EARLY_RATE ? rate : EARLY_RATE);
+    return towards(mean, value, value < mean && rate < USUAL_RATE ? rate : USUAL_RATE);
 }
 
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,

@@ -154,8 +154,9 @@ static void test_the_lasting_mean_falls_slower_than_it_rises(void) {
     TEST_ASSERT_EQUAL_INT(35, frames_half_way(1000, 0.6f)); /* .98^35 = .49 */
     TEST_ASSERT_EQUAL_INT(14, frames_half_way(1000, 0.9f)); /* .95^14 = .49 */
     /* The first frames are always like the start, which says nothing of what will last. */
-    TEST_ASSERT_TRUE(frames_half_way(1, 0.6f) <= 2);
-    TEST_ASSERT_TRUE(frames_half_way(20, 0.6f) < 14);
+    TEST_ASSERT_EQUAL_INT(14, frames_half_way(1, 0.6f));
+    TEST_ASSERT_EQUAL_INT(14, frames_half_way(40, 0.6f));
+    TEST_ASSERT_TRUE(frames_half_way(100, 0.6f) > 20);
 }
 
 /* Leaves close over the object within some forty frames, each hardly unlike the last, and the cloud stays sure of what it sees. */
