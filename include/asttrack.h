@@ -189,16 +189,18 @@ typedef struct ast_config {
     int32_t scoring;    /* AST_SCORING_* */
 
     /* Guard: what the tracker learns from, and what it does when the object is gone */
-    float guard;  /* least likeness to the start, relative to the lasting one, of a frame that is learned from, 0 .. 1; 0: no guard */
-    float recall; /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
+    float
+        guard; /* least likeness to the start, relative to the lasting one, of a frame that is learned from, 0 .. 1; 0: no guard */
+    float recall;    /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
     float reacquire; /* least likeness to the start that ends AST_LOST, beside recall's, 0 .. 1 */
     float
         selective; /* with a guard and a full bag: least likeness to the start of a frame whose model takes another's place, 0 .. 1 */
 
     /* Confidence */
     float score_uncertain; /* below this score a frame is doubtful, 0 .. 1 */
-    float score_lost;      /* without a guard: below this score a frame counts towards AST_LOST, 0 .. score_uncertain */
-    int32_t lost_after;    /* consecutive frames that count (with a guard: that it refuses) and make AST_LOST, 1 .. 10000 */
+    float score_lost;   /* without a guard: below this score a frame counts towards AST_LOST, with one it takes no place in a full
+                            * bag, 0 .. score_uncertain */
+    int32_t lost_after; /* consecutive frames that count (with a guard: that it refuses) and make AST_LOST, 1 .. 10000 */
 
     /* Threads that share a step's work, the caller's own among them, 1 .. AST_MAX_THREADS; 1 alone in a build without threads
      * (AST_NO_THREADS, AST_NO_HEAP). The results are the same bits for every number. */

@@ -90,8 +90,9 @@ struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config 
     return next;
 }
 
-int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance) {
-    return resemblance->start >= cfg->selective * guard->usual.start;
+int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance,
+                      float score) {
+    return score >= cfg->score_lost && resemblance->start >= cfg->selective * guard->usual.start;
 }
 
 void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud) {

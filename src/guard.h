@@ -42,9 +42,10 @@ struct ast_resemblance ast_guard_resemblance(const float *vector, const float *a
  * of the lasting and cfg->recall of the usual. */
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                                 const struct ast_resemblance *resemblance, float spread);
-/* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual. What slowly
- * covers an object would else replace all that is known of it, one frame hardly unlike the last. */
-int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance);
+/* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual, and with a
+ * score of cfg->score_lost at least. What slowly covers an object, or what stands where it was, would else replace all that is known of
+ * it, one frame hardly unlike the last. */
+int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance, float score);
 /* While lost, half of the particles go on following what was likeliest, since it may still be the object in a new guise; the other
  * half searches around the last trusted estimate. This gives the searchers their place, before the walk; */
 void ast_guard_gather(const struct ast_guard *guard, struct ast_cloud *cloud);

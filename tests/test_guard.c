@@ -178,10 +178,12 @@ static void test_what_is_covered_little_by_little_is_lost_in_the_end(void) {
 static void test_only_what_is_like_the_start_takes_a_place(void) {
     const struct ast_resemblance like = {0.69f, 0.2f}, unlike = {0.67f, 0.99f};
     for (int f = 0; f < 5; f++) see(0.8f, 0.9f, 0.02f);
-    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &like));
-    TEST_ASSERT_FALSE(ast_guard_selects(&guard, &cfg, &unlike));
+    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &like, 0.9f));
+    TEST_ASSERT_FALSE(ast_guard_selects(&guard, &cfg, &unlike, 0.9f));
     cfg.selective = 0.0f;
-    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &unlike));
+    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &unlike, 0.9f));
+    TEST_ASSERT_TRUE(ast_guard_selects(&guard, &cfg, &unlike, cfg.score_lost));
+    TEST_ASSERT_FALSE(ast_guard_selects(&guard, &cfg, &like, 0.9f * cfg.score_lost)); /* it is hardly the object */
 }
 
 static void test_lost_after_refused_frames_until_both_likenesses_return(void) {

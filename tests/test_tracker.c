@@ -276,6 +276,7 @@ static void test_a_full_bag_is_selective(void) {
             cfg.guard = 0.6f;
             cfg.recall = 0.0f; /* nothing is refused */
             cfg.selective = selective[s];
+            cfg.score_lost = 0.0f; /* whatever its score */
             if (room) cfg.bag_size = 30;
             ast_tracker *t = tracker_new(&cfg, backends[0]);
             start(t);
