@@ -16,7 +16,7 @@ BOX = ",".join(f"{side:.2f}" for side in BOXES[0])
 
 def example(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True, check=False, timeout=120
+        [sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True, check=False, timeout=400
     )
 
 

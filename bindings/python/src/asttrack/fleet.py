@@ -19,7 +19,7 @@ from asttrack.failures import DataError, UsageError, unusable
 from asttrack.output import replacing, write_text
 
 RETRIES = 2  # of a task that raised; one whose worker died is moved to another by the scheduler itself
-CONNECT_SECONDS = 10
+CONNECT_SECONDS = 60  # a busy machine's scheduler takes its time; where none listens, that is known at once
 COLUMNS = ("sequence", "tracker", "seed", "frames", "compared", "centre_error", "precision", "success", "lost")
 LAST_BOX = ("last_x", "last_y", "last_w", "last_h")
 """Columns of the table of results. There are no times in it: workers of a cluster have neighbours, and differ."""
