@@ -308,6 +308,7 @@ $(faulty_command): $(BUILDDIR)/obj/fault/faults.o $(command_objects) $(static_li
 	$(call say,LINK)
 	$(quiet)$(link) $(faulty_calls:%=-Wl$(comma)--wrap=%) -o $@ $< $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
 $(BUILDDIR)/tests/test_command_faults: | $(faulty_command)
+$(BUILDDIR)/tests/test_command: | $(BUILDDIR)/minimal
 
 $(BUILDDIR)/obj/fuzz/%.o: tests/fuzz/%.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)
