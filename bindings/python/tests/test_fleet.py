@@ -38,7 +38,7 @@ def sequences(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def client() -> Iterator[Client]:
     patient = {f"distributed.comm.timeouts.{what}": f"{PATIENCE} s" for what in ("connect", "tcp")}
-    with dask.config.set(patient):  # type: ignore[no-untyped-call]
+    with dask.config.set(patient):
         cluster = LocalCluster(  # type: ignore[no-untyped-call]
             n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None, silence_logs=50
         )
