@@ -308,6 +308,7 @@ $(faulty_command): $(BUILDDIR)/obj/fault/faults.o $(command_objects) $(static_li
 	$(call say,LINK)
 	$(quiet)$(link) $(faulty_calls:%=-Wl$(comma)--wrap=%) -o $@ $< $(command_objects) $(static_lib) $(jpeg_libs) $(lib_libs)
 $(BUILDDIR)/tests/test_command_faults: | $(faulty_command)
+$(BUILDDIR)/tests/test_command: | $(BUILDDIR)/minimal
 
 $(BUILDDIR)/obj/fuzz/%.o: tests/fuzz/%.c $(BUILDDIR)/flags
 	@mkdir -p $(@D)
@@ -359,7 +360,8 @@ fuzz: ## fuzz every harness for its share of MINUTES, with clang under the addre
 	    SANITIZE=fuzzer-no-link$(comma)address$(comma)undefined$(comma)float-cast-overflow fuzz-programs
 	@scripts/fuzz.sh $(MINUTES) $(BUILDDIR)/found $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/clang-fuzz/fuzz/%)
 
-# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python.
+# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python. OpenBLAS's own threads, which it never uses
+# here, would take memory in their own time.
 .PHONY: soak
 $(BUILDDIR)/soak: $(BUILDDIR)/obj/soak/soak.o $(BUILDDIR)/obj/tests/support_render.o $(BUILDDIR)/obj/tests/support_noise.o \
 		$(static_lib) $(BUILDDIR)/sources
@@ -370,7 +372,7 @@ $(BUILDDIR)/obj/soak/%.o: tests/soak/%.c $(BUILDDIR)/flags
 	$(call say,CC)
 	$(quiet)$(CC) $(test_flags) -iquote tests -c -o $@ $<
 soak: $(BUILDDIR)/soak .venv/installed ## run trackers for FRAMES=1000000 frames and more, and look at their memory, numbers and time
-	$(BUILDDIR)/soak $(or $(FRAMES),100000)
+	OPENBLAS_NUM_THREADS=1 $(BUILDDIR)/soak $(or $(FRAMES),100000)
 	.venv/bin/python tests/soak/soak.py $(or $(FRAMES),100000)
 
 sanitize: unity ## the C tests under SANITIZE=address, undefined, thread or a list of them

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static uint8_t arena[1 << 20];      /* the tracker lives here; ast_mem_size tells how much of it is needed */
-static uint8_t pixels[1920 * 1080]; /* one frame */
+static uint8_t arena[2 * 1024 * 1024]; /* the tracker lives here; ast_mem_size tells how much of it is needed */
+static uint8_t pixels[1920 * 1080];    /* one frame */
 
 static int fail(const char *what, const char *why) {
     fprintf(stderr, "minimal: %s: %s\n", what, why);
@@ -26,15 +26,26 @@ static int read_pgm(const char *path, ast_frame *frame) {
     return (file == NULL || fclose(file) == 0) && size > 0 && got == size;
 }
 
+static int read_box(char **words, ast_box *box) {
+    float side[4];
+    for (int i = 0; i < 4; ++i) {
+        char *end;
+        side[i] = strtof(words[i], &end);
+        if (end == words[i] || *end != '\0') return 0;
+    }
+    *box = (ast_box){side[0], side[1], side[2], side[3]};
+    return 1;
+}
+
 int main(int argc, char **argv) {
     ast_config config;
+    ast_result result;
     ast_tracker *tracker = NULL;
     int code = ast_config_preset(&config, AST_PRESET_ROBUST);
-    if (argc < 6) {
+    if (argc < 6 || !read_box(argv + 1, &result.box)) {
         fail("usage", "minimal X Y WIDTH HEIGHT first.pgm second.pgm ...");
         return 2;
     }
-    ast_result result = {.box = {strtof(argv[1], NULL), strtof(argv[2], NULL), strtof(argv[3], NULL), strtof(argv[4], NULL)}};
     if (code != AST_OK || (code = ast_init(&tracker, &config, arena, sizeof arena)) != AST_OK) {
         return fail("ast_init", ast_strerror(code));
     }

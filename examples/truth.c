@@ -83,6 +83,9 @@ static int read_line(FILE *stream, char *line) {
     return c == EOF && length == 0 ? 0 : 1;
 }
 
+/* What some editors put before a text. */
+static const char byte_order_mark[] = "\xef\xbb\xbf";
+
 static bool read_stream(ground_truth *t, const char *path, FILE *stream) {
     char line[LINE_SIZE];
     int32_t capacity = 0, blank = 0; /* blank: line number of an empty line, fine where only empty lines follow */
@@ -91,6 +94,9 @@ static bool read_stream(ground_truth *t, const char *path, FILE *stream) {
         if (got == 0) break;
         ast_box box;
         const char *reason = got < 0 ? "not four numbers x,y,w,h" : NULL;
+        if (reason == NULL && number == 1 && strncmp(line, byte_order_mark, strlen(byte_order_mark)) == 0) {
+            memmove(line, line + strlen(byte_order_mark), strlen(line) + 1 - strlen(byte_order_mark));
+        }
         if (reason == NULL && skip_separators(line)[0] == '\0') {
             blank = blank == 0 ? number : blank;
             continue;

@@ -18,8 +18,8 @@ for harness in "$@"; do
     name=$(basename "$harness" | sed 's/^fuzz_//')
     mkdir -p "$directory/$name"
     log=$directory/$name.log
-    # A JPEG may take libjpeg a while to give up on; more than ten seconds for any input is a fault.
-    "$harness" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 \
+    # A JPEG may take libjpeg a while to give up on; more than a minute for any input is a fault.
+    "$harness" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=1024 -print_final_stats=1 \
         -artifact_prefix="$directory/$name-" "$directory/$name" "$corpus/$name" >"$log" 2>&1
     status=$?
     executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

@@ -18,10 +18,8 @@ objects="$directory/bits.o $directory/small_scene.o"
 "$directory/as-c" >"$directory/as-c.out"
 
 for compiler in g++ clang++; do
-    for standard in c++11 c++17; do
-        # shellcheck disable=SC2086
-        "$compiler" -x c++ -std=$standard -fsyntax-only $flags $warnings $sources
-    done
+    # shellcheck disable=SC2086
+    "$compiler" -x c++ -std=c++17 -fsyntax-only $flags $warnings $sources
     "$compiler" -x c++ -std=c++11 -O1 $flags $warnings $sources -x none $objects -lm -o "$directory/as-$compiler"
     "$directory/as-$compiler" >"$directory/as-$compiler.out"
     cmp "$directory/as-c.out" "$directory/as-$compiler.out"

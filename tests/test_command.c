@@ -11,6 +11,8 @@
 #include "support_watched.h"
 #include "unity.h"
 
+static char minimal[PATH_SIZE]; /* the program to copy */
+
 void setUp(void) {
 }
 void tearDown(void) {
@@ -289,9 +291,11 @@ static void test_files_instead_of_a_directory(void) {
     TEST_ASSERT_NOT_NULL(strstr(csv, "\n1,30.0000,20.0000,16.0000,14.0000,1.000000,"));
 }
 
-/* The frame whose box is given does not count, nor does one without a box: nan or, as others write it, 0 four times. */
+/* The frame whose box is given does not count, nor does one without a box: nan or, as others write it, 0 four times; the mark
+ * that some editors put before a text is no part of it. */
 static void test_what_counts(void) {
     static const char *const truths[] = {"30,20,16,14\n1000,20,16,14\n", "30,20,16,14\nnan,nan,nan,nan\n1000,20,16,14\n",
+                                         "\xef\xbb\xbf"
                                          "30 20 16 14\n0 0 0 0\n1000 20 16 14\n"};
     static char picture[TEXT_SIZE];
     for (int i = 0; i < 3; i++) {
@@ -319,6 +323,32 @@ static void test_annotated_frames_and_sheet(void) {
     TEST_ASSERT_EQUAL_INT(12, count_files(at("@drawn")));
     TEST_ASSERT_TRUE(read_file(at("@sheet.ppm"), header, sizeof header) > 10);
     TEST_ASSERT_EQUAL_INT(0, strncmp(header, "P6\n", 3));
+}
+
+static const struct outcome *run_minimal(const char *line) {
+    static struct outcome outcome;
+    const struct job job = start_prepared_job(0, minimal, line, NULL);
+    finish_job(&job, &outcome);
+    return &outcome;
+}
+
+/* The program to copy: its block is large enough for whatever backend it is built with. */
+static void test_minimal_program(void) {
+    float x, y, w, h;
+    char truth[TEXT_SIZE], line[256];
+    (void)read_file(at("@small/groundtruth.txt"), truth, sizeof truth);
+    TEST_ASSERT_EQUAL_INT(4, sscanf(truth, "%f,%f,%f,%f", &x, &y, &w, &h));
+    snprintf(line, sizeof line, "%g %g %g %g @small/img/00001.pgm @small/img/00002.pgm", (double)x, (double)y, (double)w,
+             (double)h);
+    const struct outcome *o = run_minimal(line);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, o->code, o->err);
+    snprintf(line, sizeof line, "%s: %g,%g,%g,%g\n", at("@small/img/00001.pgm"), (double)x, (double)y, (double)w, (double)h);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(o->out, line, strlen(line)), o->out);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(o->out, at("@small/img/00002.pgm: ")), o->out);
+    TEST_ASSERT_EQUAL_INT(2, run_minimal("1,2,3,4 @small/img/00001.pgm 3 4 @small/img/00002.pgm")->code);
+    o = run_minimal("1 2 30 40 @absent.pgm");
+    TEST_ASSERT_EQUAL_INT(1, o->code);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(o->err, "absent.pgm: not a binary PGM"), o->err);
 }
 
 static void test_version_help_and_config(void) {
@@ -521,6 +551,7 @@ static void make_inputs(void) {
 int main(int argc, char **argv) {
     (void)argc;
     if (command_open(argv[0]) != 0) return 1;
+    snprintf(minimal, sizeof minimal, "%s", program_beside(argv[0], "../minimal"));
     UNITY_BEGIN();
     RUN_TEST(make_inputs);
     RUN_TEST(test_synth_makes_a_sequence);
@@ -535,6 +566,7 @@ int main(int argc, char **argv) {
     RUN_TEST(test_files_instead_of_a_directory);
     RUN_TEST(test_what_counts);
     RUN_TEST(test_annotated_frames_and_sheet);
+    RUN_TEST(test_minimal_program);
     RUN_TEST(test_version_help_and_config);
     RUN_TEST(test_bad_usage);
     RUN_TEST(test_bad_data);

@@ -39,7 +39,8 @@ def four_numbers(text: str) -> asttrack.Box:
 
 def track(frames: Path, box: asttrack.Box | None) -> None:
     """Prints a line for each frame."""
-    files = sorted(frames.glob("*.pgm")) or sorted(frames.glob("img/*.pgm"))
+    # Shorter names first: 10.pgm comes after 9.pgm.
+    files = sorted(list(frames.glob("*.pgm")) or frames.glob("img/*.pgm"), key=lambda path: (len(path.name), path.name))
     if not files:
         raise ValueError(f"{frames}: no PGM frames in it")
     if box is None:

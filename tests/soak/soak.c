@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -236,6 +237,8 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: soak FRAMES (at least 1000)\n");
         return 2;
     }
+    /* a page that the kernel makes huge in its own time looks like memory that grows */
+    (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
     allocations_watch();
     render_film();
     soak("paper preset's parts", AST_PRESET_PAPER, frames);

@@ -5,6 +5,7 @@ Memory stays, numbers stay numbers, processor time does not drift.
 usage: soak.py FRAMES
 """
 
+import ctypes
 import gc
 import resource
 import sys
@@ -19,6 +20,7 @@ SIDE = (48, 64)
 LOOP = 100
 BLOCKS = 10
 CROWD = 200
+PR_SET_THP_DISABLE = 41  # a page that the kernel makes huge in its own time looks like memory that grows
 SETTINGS: dict[str, int] = {
     "particles": 32,
     "patch_width": 8,
@@ -121,6 +123,7 @@ def main() -> None:
         print("usage: soak.py FRAMES (at least 1000)", file=sys.stderr)
         sys.exit(2)
     frames = int(sys.argv[1])
+    ctypes.CDLL(None).prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0)
     film, boxes = make_film()
     soak(frames, film, boxes)
     crowd(min(max(frames // 1000, 100), 500), film, boxes)

@@ -23,8 +23,9 @@ def make(directory: Path, lines: list[str], frames: int, truth: str = "groundtru
 @pytest.mark.parametrize("line", ["1.5,2,30,4e1", "1.5\t2\t30\t40", "1.5 2 30 40", "  1.5,  2,30 ,40  ", "1.5, 2, 30, 40,"])
 def test_every_form_of_ground_truth_is_read(tmp_path: Path, line: str) -> None:
     path = tmp_path / "groundtruth.txt"
-    path.write_text(f"{line}\n{line}\r\n\n")
-    assert read_truth(path).tolist() == [[1.5, 2, 30, 40]] * 2
+    for begin in ("", "\ufeff"):  # which some editors put before a text
+        path.write_text(f"{begin}{line}\n{line}\r\n\n", encoding="utf-8")
+        assert read_truth(path).tolist() == [[1.5, 2, 30, 40]] * 2
 
 
 @pytest.mark.parametrize("absent", ["nan,nan,nan,nan", "NaN\tNaN\tNaN\tNaN", "0,0,0,0"])

@@ -2,15 +2,18 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+import dask
 import pytest
 from distributed import Client, LocalCluster
 from pyarrow import parquet  # type: ignore[import-untyped]
@@ -20,8 +23,8 @@ from terminal import all_shown, open_terminal, shown_until
 
 COUNT: Final = 6
 FRAMES: Final = 40
-PARTICLES: Final = 600  # so many that a sequence takes long enough to be caught in the act
-SLOW: Final = 2000  # and so many that the next sequences take longer than an interrupt
+PARTICLES: Final = 100
+PATIENCE: Final = 300.0  # seconds for what takes a moment, on however busy a machine
 
 
 @pytest.fixture(scope="module")
@@ -34,11 +37,14 @@ def sequences(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def client() -> Iterator[Client]:
-    cluster = LocalCluster(  # type: ignore[no-untyped-call]
-        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None, silence_logs=50
-    )
-    with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
-        yield client
+    patient = {f"distributed.comm.timeouts.{what}": f"{PATIENCE} s" for what in ("connect", "tcp")}
+    with dask.config.set(patient):
+        cluster = LocalCluster(  # type: ignore[no-untyped-call]
+            n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None, silence_logs=50
+        )
+        with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
+            client.wait_for_workers(2, timeout=PATIENCE)
+            yield client
 
 
 def words(sequences: list[Path], *options: object) -> list[str]:
@@ -49,18 +55,42 @@ def words(sequences: list[Path], *options: object) -> list[str]:
 def fleet(*arguments: object) -> subprocess.CompletedProcess[str]:
     sequences, *options = arguments
     assert isinstance(sequences, list)
-    return subprocess.run(words(sequences, *options), capture_output=True, text=True, check=False, timeout=120)
+    return subprocess.run(words(sequences, *options), capture_output=True, text=True, check=False, timeout=PATIENCE)
 
 
-def busy_worker(client: Client) -> str:
-    """The address of a worker that has begun to track, when others are still to come."""
-    end = time.monotonic() + 60
-    while time.monotonic() < end:
-        running = {address: keys for address, keys in client.processing().items() if keys}  # type: ignore[no-untyped-call]
-        if running:
-            return str(max(running, key=lambda address: len(running[address])))
-        time.sleep(0.02)
-    raise AssertionError("no worker began to work")
+class Gates:
+    """Copies of sequences with a pipe for a frame: who comes to it waits, inside the sequence, until the frame is there."""
+
+    def __init__(self, sequences: Path, directory: Path, numbers: Iterable[int]) -> None:
+        shutil.copytree(sequences, directory)
+        self._frames: dict[Path, bytes] = {}
+        self._writers: dict[Path, int] = {}
+        for number in numbers:
+            frame = directory / f"scene{number}" / "img" / f"{FRAMES // 2:05d}.pgm"
+            self._frames[frame] = frame.read_bytes()
+            frame.unlink()
+            os.mkfifo(frame)
+
+    def wait_for(self, count: int) -> None:
+        """Until so many wait."""
+        end = time.monotonic() + PATIENCE
+        while len(self._writers) < count:
+            assert time.monotonic() < end, f"{len(self._writers)} of {count} came to a pipe"
+            for frame in self._frames.keys() - self._writers.keys():
+                with suppress(OSError):  # nobody reads it yet
+                    self._writers[frame] = os.open(frame, os.O_WRONLY | os.O_NONBLOCK)
+            time.sleep(0.02)
+
+    def open(self) -> None:
+        """Lets go who waits; whoever comes finds a frame."""
+        for frame, content in self._frames.items():
+            real = frame.with_suffix(".real")
+            real.write_bytes(content)
+            real.replace(frame)
+        for frame, writer in self._writers.items():
+            with suppress(BrokenPipeError):  # the reader was killed
+                os.write(writer, self._frames[frame])
+            os.close(writer)
 
 
 def test_a_killed_worker_changes_nothing(client: Client, sequences: Path, tmp_path: Path) -> None:
@@ -69,9 +99,10 @@ def test_a_killed_worker_changes_nothing(client: Client, sequences: Path, tmp_pa
     assert calm.returncode == 0, calm.stderr
     before: dict[str, int] = client.run(os.getpid)
 
+    gates = Gates(sequences, tmp_path / "gated", range(COUNT))
     stormy: list[subprocess.CompletedProcess[str]] = []
     arguments: list[Any] = [
-        [sequences],
+        [tmp_path / "gated"],
         "--scheduler",
         address,
         "--out",
@@ -81,18 +112,17 @@ def test_a_killed_worker_changes_nothing(client: Client, sequences: Path, tmp_pa
     ]
     thread = threading.Thread(target=lambda: stormy.append(fleet(*arguments)))
     thread.start()
-    victim = busy_worker(client)
-    # Long enough to be inside a sequence, which takes some tenths of a second at least.
-    time.sleep(0.1)
-    still_at_work = client.processing()[victim]  # type: ignore[no-untyped-call]
+    # Both workers are inside a sequence, and others are still to come.
+    gates.wait_for(2)
+    victim = next(iter(before))
     os.kill(before[victim], signal.SIGKILL)
-    thread.join(120)
+    gates.open()
+    thread.join(2 * PATIENCE)
     (done,) = stormy
 
-    assert still_at_work
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
-    client.wait_for_workers(2, timeout=60)
+    client.wait_for_workers(2, timeout=PATIENCE)
     after: dict[str, int] = client.run(os.getpid)
     assert before[victim] not in after.values()
     assert len(set(before.values()) & set(after.values())) == 1
@@ -143,9 +173,10 @@ def test_no_scheduler_and_no_sequence_are_one_line(sequences: Path, tmp_path: Pa
 @pytest.mark.parametrize("own", [False, True])
 def test_an_interrupt_keeps_what_is_finished(client: Client, sequences: Path, tmp_path: Path, own: bool) -> None:
     cluster = ["--workers", 1] if own else ["--scheduler", client.scheduler_info()["address"]]
+    gates = Gates(sequences, tmp_path / "gated", [COUNT - 1])  # the last one is never finished
     reader, terminal = open_terminal()
     process = subprocess.Popen(
-        words([sequences], *cluster, "--set", f"particles={SLOW}", "--out", tmp_path / "table.csv"),
+        words([tmp_path / "gated"], *cluster, "--out", tmp_path / "table.csv"),
         stdout=subprocess.DEVNULL,
         stderr=terminal,
         start_new_session=True,
@@ -155,7 +186,8 @@ def test_an_interrupt_keeps_what_is_finished(client: Client, sequences: Path, tm
     # A terminal sends it to the whole group of processes: workers of its own cluster must not mind.
     os.killpg(process.pid, signal.SIGINT)
     shown += all_shown(reader)
-    assert process.wait(60) == 130, shown
+    assert process.wait(PATIENCE) == 130, shown
+    gates.open()
     assert "Traceback" not in shown
     finished = len((tmp_path / "table.csv").read_text().splitlines()) - 1
     assert 1 <= finished < COUNT

@@ -24,6 +24,7 @@ FLAGS: Final = (
     "--headless",
     "--no-sandbox",
     "--disable-gpu",
+    "--disable-dev-shm-usage",  # a container's /dev/shm is small
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -178,7 +179,7 @@ def visit(page: Path, directory: Path, *options: str) -> subprocess.CompletedPro
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=400,
     )
     assert done.returncode == 0, done.stderr
     complaints = [line for line in done.stderr.splitlines() if ":CONSOLE" in line]

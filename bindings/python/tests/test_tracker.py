@@ -81,7 +81,10 @@ def test_a_box_is_any_four_numbers(box: Any) -> None:
         (5, TypeError),
         (None, TypeError),
         ((1, 2, 3, None), TypeError),
-        ("wide", ValueError),
+        ("wide", TypeError),
+        ("1234", TypeError),
+        (b"1234", TypeError),
+        ((1, 2, 10**400, 4), ValueError),
     ],
 )
 def test_a_box_of_another_kind_is_refused(box: Any, error: type[Exception]) -> None:

@@ -19,7 +19,7 @@ from asttrack.failures import DataError, UsageError, unusable
 from asttrack.output import replacing, write_text
 
 RETRIES = 2  # of a task that raised; one whose worker died is moved to another by the scheduler itself
-CONNECT_SECONDS = 10
+CONNECT_SECONDS = 60  # a busy machine's scheduler takes its time; where none listens, that is known at once
 COLUMNS = ("sequence", "tracker", "seed", "frames", "compared", "centre_error", "precision", "success", "lost")
 LAST_BOX = ("last_x", "last_y", "last_w", "last_h")
 """Columns of the table of results. There are no times in it: workers of a cluster have neighbours, and differ."""
@@ -36,6 +36,9 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
     Raises:
         DataError: there is no scheduler at the address.
     """
+    # What a client's own thread has to say of connections that end, an interrupt's among them, is no part of ours.
+    for speaker in ("distributed", "distributed.client", "tornado.application", "asyncio"):
+        logging.getLogger(speaker).setLevel(logging.CRITICAL)
     if scheduler is not None:
         try:
             client = Client(scheduler, timeout=CONNECT_SECONDS)  # type: ignore[no-untyped-call]

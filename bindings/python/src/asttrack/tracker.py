@@ -312,11 +312,14 @@ class Tracker:
 
 
 def _box(box: Iterable[float]) -> _abi.Box:
+    refusal = f"a box must be four numbers (x, y, w, h), not {box!r}"
+    if isinstance(box, (str, bytes)):  # their parts may be digits
+        raise TypeError(refusal)
     try:
         x, y, w, h = map(float, box)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         kind = TypeError if isinstance(error, TypeError) else ValueError
-        raise kind(f"a box must be four numbers (x, y, w, h), not {box!r}") from None
+        raise kind(refusal) from None
     return _abi.Box(x, y, w, h)
 
 

@@ -1,5 +1,6 @@
 """Sequences on disk: a directory with numbered frames in `img/` and the object's box in each."""
 
+import codecs
 import math
 import re
 from collections.abc import Iterable, Iterator
@@ -124,7 +125,7 @@ def read_truth(path: Path) -> NDArray[np.float64]:
     Raises DataError.
     """
     try:
-        lines = path.read_text(encoding="ascii").splitlines()
+        lines = path.read_bytes().removeprefix(codecs.BOM_UTF8).decode("ascii").splitlines()
     except OSError as error:
         raise unusable(path, error) from error
     except UnicodeDecodeError as error:
