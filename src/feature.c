@@ -2,8 +2,7 @@
 
 /* A part of the vector. A new feature is a new file and a row below. */
 struct part {
-    int (*length)(const ast_config *cfg); /* 0: not in this configuration */
-    float (*weight)(const ast_config *cfg);
+    int (*length)(const ast_config *cfg);                                                   /* 0: not in this configuration */
     void (*layout)(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena); /* NULL: nothing, as the next two */
     void (*scratch_layout)(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena);
     void (*prepare)(struct ast_features *f, const ast_frame *image, float object_width, float object_height);
@@ -14,23 +13,19 @@ struct part {
 static int patch_length(const ast_config *cfg) {
     return cfg->patch_weight > 0.0f ? cfg->patch_width * cfg->patch_height : 0;
 }
-static float patch_weight(const ast_config *cfg) {
-    return cfg->patch_weight;
-}
 static void patch_scratch_layout(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena) {
     ast_sampler_layout(&own->patch, cfg, arena);
 }
 static void patch_vector(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
                          const ast_box *window, float *out) {
-    (void)f;
     ast_sampler_patch(&own->patch, image, window, out);
+    const float weight = f->cfg.patch_weight;
+    const int length = patch_length(&f->cfg);
+    for (int i = 0; weight != 1.0f && i < length; i++) out[i] *= weight;
 }
 
 static int gradient_length(const ast_config *cfg) {
     return cfg->gradient_weight > 0.0f ? cfg->gradient_cells * cfg->gradient_cells * AST_DIRECTIONS : 0;
-}
-static float gradient_weight(const ast_config *cfg) {
-    return cfg->gradient_weight;
 }
 static void gradient_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
     ast_gradient_layout(&f->gradient, cfg, arena);
@@ -46,8 +41,8 @@ static void gradient_vector(const struct ast_features *f, struct ast_features_sc
 }
 
 static const struct part parts[] = {
-    {patch_length, patch_weight, NULL, patch_scratch_layout, NULL, patch_vector},
-    {gradient_length, gradient_weight, gradient_layout, NULL, gradient_prepare, gradient_vector},
+    {patch_length, NULL, patch_scratch_layout, NULL, patch_vector},
+    {gradient_length, gradient_layout, NULL, gradient_prepare, gradient_vector},
 };
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
@@ -79,9 +74,6 @@ void ast_features_vector(const struct ast_features *f, struct ast_features_scrat
         const int length = parts[p].length(&f->cfg);
         if (length == 0) continue;
         parts[p].vector(f, own, image, window, vector);
-        const float weight = parts[p].weight(&f->cfg);
-        if (weight != 1.0f)
-            for (int i = 0; i < length; i++) vector[i] *= weight;
         vector += length;
     }
 }

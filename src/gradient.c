@@ -4,6 +4,7 @@ void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct a
     const size_t side = (size_t)cfg->view;
     g->kernels = ast_kernels();
     g->cells = cfg->gradient_cells;
+    g->weight = cfg->gradient_weight;
     g->side = cfg->view;
     g->maps = ast_arena_take(arena, side * side * AST_DIRECTIONS, sizeof *g->maps);
     /* The energy takes the maps' second half: a row of maps is written where no row of the energy is still to be read. The first half

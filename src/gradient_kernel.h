@@ -180,34 +180,51 @@ static void maps(struct ast_gradient *g, const ast_frame *image, float cell_x, f
 static void cells(const struct ast_gradient *g, const ast_box *window, float *restrict out) {
     const int count = g->cells, length = count * count * AST_DIRECTIONS;
     size_t left[AST_MAX_CELLS], right[AST_MAX_CELLS];
-    float across[AST_MAX_CELLS];
+    float across[AST_MAX_CELLS], top_left[AST_MAX_CELLS], top_right[AST_MAX_CELLS], bottom_left[AST_MAX_CELLS],
+        bottom_right[AST_MAX_CELLS];
     for (int c = 0; c < count; c++) {
         const float x = window->x + ((float)c + 0.5f) * window->w / (float)count - 0.5f, floor_x = ast_floorf(x);
         across[c] = x - floor_x;
         left[c] = (size_t)ast_gradient_edge((int)floor_x, g->width) * AST_DIRECTIONS;
         right[c] = (size_t)ast_gradient_edge((int)floor_x + 1, g->width) * AST_DIRECTIONS;
     }
+#if AST_HAS_VECTORS
+    reals squares[SQUARES / REALS];
+    for (int v = 0; v < SQUARES / REALS; v++) squares[v] = (reals){0};
+#endif
     for (int r = 0; r < count; r++) {
         const float y = window->y + ((float)r + 0.5f) * window->h / (float)count - 0.5f;
         const float floor_y = ast_floorf(y), down = y - floor_y;
         const uint8_t *upper = g->maps + (size_t)ast_gradient_edge((int)floor_y, g->height) * (size_t)g->side * AST_DIRECTIONS;
         const uint8_t *lower = g->maps + (size_t)ast_gradient_edge((int)floor_y + 1, g->height) * (size_t)g->side * AST_DIRECTIONS;
         for (int c = 0; c < count; c++) {
-            const float top_right = (1.0f - down) * across[c], top_left = (1.0f - down) - top_right;
-            const float bottom_right = down * across[c], bottom_left = down - bottom_right;
+            top_right[c] = (1.0f - down) * across[c];
+            top_left[c] = (1.0f - down) - top_right[c];
+            bottom_right[c] = down * across[c];
+            bottom_left[c] = down - bottom_right[c];
+        }
+        for (int c = 0; c < count; c++) {
             float *cell = out + (size_t)(r * count + c) * AST_DIRECTIONS;
 #if AST_HAS_VECTORS
-            *(eight *)cell = EIGHT_NUMBERS(upper + left[c]) * top_left + EIGHT_NUMBERS(upper + right[c]) * top_right +
-                             EIGHT_NUMBERS(lower + left[c]) * bottom_left + EIGHT_NUMBERS(lower + right[c]) * bottom_right;
+            *(eight *)cell = EIGHT_NUMBERS(upper + left[c]) * top_left[c] + EIGHT_NUMBERS(upper + right[c]) * top_right[c] +
+                             EIGHT_NUMBERS(lower + left[c]) * bottom_left[c] + EIGHT_NUMBERS(lower + right[c]) * bottom_right[c];
+            add_squares(cell, squares);
 #else
             for (int k = 0; k < AST_DIRECTIONS; k++) {
-                cell[k] = top_left * (float)upper[left[c] + (size_t)k] + top_right * (float)upper[right[c] + (size_t)k] +
-                          bottom_left * (float)lower[left[c] + (size_t)k] + bottom_right * (float)lower[right[c] + (size_t)k];
+                cell[k] = top_left[c] * (float)upper[left[c] + (size_t)k] + top_right[c] * (float)upper[right[c] + (size_t)k] +
+                          bottom_left[c] * (float)lower[left[c] + (size_t)k] + bottom_right[c] * (float)lower[right[c] + (size_t)k];
             }
 #endif
         }
     }
+#if AST_HAS_VECTORS
+    ast_real sum[SQUARES];
+    memcpy(sum, squares, sizeof sum);
+    const float norm = (float)ast_sqrt(((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7])));
+#else
     const float norm = (float)ast_sqrt(dot(out, out, length));
+#endif
     const float factor = 1.0f / (norm + 0.1f * AST_GRADIENT_UNIT);
-    for (int i = 0; i < length; i++) out[i] *= factor;
+    const float weight = g->weight;
+    for (int i = 0; i < length; i++) out[i] = out[i] * factor * weight;
 }

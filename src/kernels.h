@@ -62,8 +62,8 @@ struct ast_kernels {
     ast_real (*dot)(const float *x, const float *y, int n);
     /* x[i] = e^x[i], for those whose result is a number. */
     void (*exponentials)(ast_real *x, int n);
-    /* vector -= origin; the squared length of what is left. */
-    ast_real (*depart)(float *vector, const float *origin, int n);
+    /* Takes the origin from `count` vectors, ld floats apart; square[i]: the squared length of what is left of vector i, as ast_dot sums. */
+    void (*depart)(float *vectors, size_t ld, int count, const float *origin, int n, ast_real *square);
     /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
     void (*solve)(const float *factor, int size, float *vectors);
     /* Lanes of symmetric eigen-problems, n x n (column-major, the triangle i <= j at i * n + j; destroyed): values (n) descending, vectors

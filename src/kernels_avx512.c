@@ -10,6 +10,7 @@
 #include <immintrin.h>
 #define AST_EIGHT_NUMBERS(bytes) _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(bytes))))
 #define AST_SIXTEEN_NUMBERS(bytes) _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)(bytes))))
+#define AST_EIGHT_DOUBLES(numbers) _mm512_cvtps_pd((__m256)(numbers))
 #define AST_KERNELS ast_kernels_avx512
 #define AST_KERNELS_NAME "AVX-512"
 #define AST_VECTOR_BYTES 64

@@ -34,24 +34,34 @@ static void pack(float *panel, const float *m, size_t ld, int used, int depth) {
 }
 
 #if AST_HAS_VECTORS
-/* COLUMNS columns at a time, their sums in registers; past the last of count, it is repeated and not written. */
-AST_ALWAYS_INLINE void block_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums,
-                                     size_t ld_sums) {
+/* `block` columns at a time, a constant, their sums in registers; past the last of count, it is repeated and not written. */
+AST_ALWAYS_INLINE void block_product(int block, const float *panel, int depth, const float *columns, size_t ld, int count,
+                                     float *sums, size_t ld_sums) {
     const float *column[COLUMNS];
-    for (int c = 0; c < COLUMNS; c++) column[c] = columns + (size_t)(c < count ? c : count - 1) * ld;
+    for (int c = 0; c < block; c++) column[c] = columns + (size_t)(c < count ? c : count - 1) * ld;
     for (int l = 0; l < AST_LANES; l += VECTORS * WIDTH) {
         vector sum[COLUMNS][VECTORS];
-        for (int c = 0; c < COLUMNS; c++)
+        for (int c = 0; c < block; c++)
             for (int v = 0; v < VECTORS; v++) sum[c][v] = (vector){0};
         for (int d = 0; d < depth; d++) {
             vector lanes[VECTORS];
             for (int v = 0; v < VECTORS; v++) lanes[v] = *(const vector *)(panel + (size_t)d * AST_LANES + l + v * WIDTH);
-            for (int c = 0; c < COLUMNS; c++)
+            for (int c = 0; c < block; c++)
                 for (int v = 0; v < VECTORS; v++) sum[c][v] += lanes[v] * column[c][d];
         }
-        for (int c = 0; c < COLUMNS && c < count; c++)
+        for (int c = 0; c < block && c < count; c++)
             for (int v = 0; v < VECTORS; v++) *(vector *)(sums + (size_t)c * ld_sums + l + v * WIDTH) += sum[c][v];
     }
+}
+
+/* A matrix whose columns are no multiple of COLUMNS ends in narrower blocks: of as many sums as hide how long an addition takes. */
+static void panel_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums) {
+    enum { NARROW = VECTORS < 4 ? 4 / VECTORS : 1 };
+    int c = 0;
+    for (; count - c >= COLUMNS; c += COLUMNS)
+        block_product(COLUMNS, panel, depth, columns + (size_t)c * ld, ld, COLUMNS, sums + (size_t)c * ld_sums, ld_sums);
+    for (; c < count; c += NARROW)
+        block_product(NARROW, panel, depth, columns + (size_t)c * ld, ld, count - c, sums + (size_t)c * ld_sums, ld_sums);
 }
 #else
 /* Four lanes by name, so that they stay in registers even where the compiler unrolls nothing. */
@@ -94,7 +104,6 @@ static void block_product(const float *panel, int depth, const float *columns, s
         if (count > 3) add_lanes(to + 3 * ld_sums, of_z);
     }
 }
-#endif
 
 static void panel_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums) {
     int c = 0;
@@ -102,3 +111,4 @@ static void panel_product(const float *panel, int depth, const float *columns, s
         block_product(panel, depth, columns + (size_t)c * ld, ld, COLUMNS, sums + (size_t)c * ld_sums, ld_sums);
     if (c < count) block_product(panel, depth, columns + (size_t)c * ld, ld, count - c, sums + (size_t)c * ld_sums, ld_sums);
 }
+#endif

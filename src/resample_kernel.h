@@ -88,9 +88,14 @@ static inline int taps_at(const struct ast_axis *axis, int i, int source_length)
 #if AST_HAS_VECTORS && AST_LANES == 16
 /* The source rows of an output row, summed over CHUNK pixels. */
 AST_ALWAYS_INLINE void sum_chunk(const uint8_t *source, size_t stride, const float *weight, size_t step, int used, float *out) {
-    sixteen sum = {0};
-    for (int j = 0; j < used; j++) sum += SIXTEEN_NUMBERS(source + (size_t)j * stride) * weight[(size_t)j * step];
-    *(sixteen *)out = sum;
+    vector sum[CHUNK / WIDTH];
+    for (int v = 0; v < CHUNK / WIDTH; v++) sum[v] = (vector){0};
+    for (int j = 0; j < used; j++) {
+        vector level[CHUNK / WIDTH];
+        widen_sixteen(source + (size_t)j * stride, level);
+        for (int v = 0; v < CHUNK / WIDTH; v++) sum[v] += level[v] * weight[(size_t)j * step];
+    }
+    for (int v = 0; v < CHUNK / WIDTH; v++) *(vector *)(out + v * WIDTH) = sum[v];
 }
 
 /* Sums the source rows of `count` output rows from `row` on over the pixels first .. first + pixels - 1, and interleaves them:
@@ -128,9 +133,12 @@ static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int ro
 /* One output of all rows. source: its first pixel in the line. */
 AST_ALWAYS_INLINE void sum_columns(const float *restrict source, const float *restrict weight, size_t step, int used,
                                    float *restrict out) {
-    sixteen sum = {0};
-    for (int j = 0; j < used; j++) sum += *(const sixteen *)(source + j * GRID_ROWS) * weight[(size_t)j * step];
-    *(sixteen *)out = sum;
+    vector sum[GRID_ROWS / WIDTH];
+    for (int v = 0; v < GRID_ROWS / WIDTH; v++) sum[v] = (vector){0};
+    for (int j = 0; j < used; j++)
+        for (int v = 0; v < GRID_ROWS / WIDTH; v++)
+            sum[v] += *(const vector *)(source + j * GRID_ROWS + v * WIDTH) * weight[(size_t)j * step];
+    for (int v = 0; v < GRID_ROWS / WIDTH; v++) *(vector *)(out + v * WIDTH) = sum[v];
 }
 
 /* The outputs c .. next - 1 of count rows, from the line, which begins with the first pixel of output c. */

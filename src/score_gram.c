@@ -343,8 +343,9 @@ static int tile(const union ast_scratch *scratch, union ast_tile_scratch *own, c
     struct ast_gram_tile *t = &own->gram;
     const struct ast_bag *bag = scene->bag;
     const int columns = ast_bag_columns(bag), n = bag->n;
+    kernels->depart(patches, (size_t)bag->stride, count, bag->columns, s->dim, t->square);
     for (int i = 0; i < AST_LANES; i++) {
-        t->square[i] = i < count ? kernels->depart(patches + (size_t)i * (size_t)bag->stride, bag->columns, s->dim) : 0;
+        if (i >= count) t->square[i] = 0;
         t->length[i] = t->square[i];
         t->apart[i] = t->background[i] = 0;
     }

@@ -2,20 +2,44 @@
 #include "score.h"
 #include "subspace.h"
 
+#if AST_HAS_VECTORS
+/* x -= origin for `count` vectors, a constant, ld floats apart: side by side, since each alone would wait for its sums. */
+AST_ALWAYS_INLINE void depart_together(int count, float *x, size_t ld, const float *origin, int n, ast_real *square) {
+    enum { TOGETHER = 4 };
+    reals sum[TOGETHER][SQUARES / REALS];
+    for (int i = 0; i < count; i++)
+        for (int v = 0; v < SQUARES / REALS; v++) sum[i][v] = (reals){0};
+    int d = 0;
+    for (; d + SQUARES <= n; d += SQUARES) {
+        for (int i = 0; i < count; i++) {
+            eight *at = (eight *)(x + (size_t)i * ld + d);
+            *at -= *(const eight *)(origin + d);
+            add_squares(x + (size_t)i * ld + d, sum[i]);
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        ast_real s[SQUARES];
+        memcpy(s, sum[i], sizeof s);
+        for (int e = d; e < n; e++) {
+            float *at = x + (size_t)i * ld + e;
+            *at -= origin[e];
+            s[0] += (ast_real)*at * (ast_real)*at;
+        }
+        square[i] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+    }
+}
+
+static void depart(float *x, size_t ld, int count, const float *origin, int n, ast_real *square) {
+    int i = 0;
+    for (; i + 4 <= count; i += 4) depart_together(4, x + (size_t)i * ld, ld, origin, n, square + i);
+    for (; i < count; i++) depart_together(1, x + (size_t)i * ld, ld, origin, n, square + i);
+}
+#else
 /* x -= origin; returns the squared length of what is left, summed as ast_dot sums. */
-static ast_real depart(float *restrict x, const float *restrict origin, int n) {
+static ast_real depart_one(float *restrict x, const float *restrict origin, int n) {
     enum { SUMS = 8 };
     ast_real sum[SUMS] = {0};
     int d = 0;
-#if AST_HAS_VECTORS
-    for (; d + SUMS <= n; d += SUMS) {
-        for (int l = 0; l < SUMS; l++) {
-            const float rest = x[d + l] - origin[d + l];
-            x[d + l] = rest;
-            sum[l] += (ast_real)rest * (ast_real)rest;
-        }
-    }
-#else
     for (int l = 0; l < SUMS; l += 4) { /* four of them in registers */
         ast_real p = 0, q = 0, r = 0, s = 0;
         for (d = 0; d + SUMS <= n; d += SUMS) {
@@ -36,13 +60,17 @@ static ast_real depart(float *restrict x, const float *restrict origin, int n) {
         sum[l + 2] = r;
         sum[l + 3] = s;
     }
-#endif
     for (; d < n; d++) {
         x[d] -= origin[d];
         sum[0] += (ast_real)x[d] * (ast_real)x[d];
     }
     return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
 }
+
+static void depart(float *x, size_t ld, int count, const float *origin, int n, ast_real *square) {
+    for (int i = 0; i < count; i++) square[i] = depart_one(x + (size_t)i * ld, origin, n);
+}
+#endif
 
 /* L^-1 applied to the lanes' vectors, in place; L is row-major, its diagonal inverted. Rows in fours, whose sums do not wait for each
  * other until the diagonal. */

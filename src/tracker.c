@@ -371,8 +371,8 @@ static int score_particles(struct ast_tracker *t, const ast_frame *frame, int mo
         frame,
         {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
         models};
-    const struct ast_task preparation = {prepare_part, &round, 2};
-    const struct ast_task tiles = {score_part, &round, (t->proposal.count + AST_TILE - 1) / AST_TILE};
+    const struct ast_task preparation = {prepare_part, &round, 2, 1};
+    const struct ast_task tiles = {score_part, &round, (t->proposal.count + AST_TILE - 1) / AST_TILE, 0};
     if (ast_workers_share(t->workers, &preparation) != 0) return AST_E_BACKEND;
     return ast_workers_share(t->workers, &tiles) != 0 ? AST_E_BACKEND : AST_OK;
 }
@@ -404,6 +404,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
 
     /* Everything below until the commit works on scratch. */
     struct ast_random random = t->random;
+    ast_workers_wake(t->workers);
     propose(t, frame, &random);
 
     const int models = t->bag.count > 0 ? t->bag.count : 1;

@@ -12,7 +12,11 @@ static int do_alone(const struct ast_task *task) {
 #ifndef AST_NO_THREADS
 
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
+
+/* How often who waits for a short time looks, and lets others run, before it sleeps: as long, about, as it takes to wake. */
+enum { LOOKS = 100 };
 
 struct ast_worker {
     struct ast_workers *all;
@@ -32,6 +36,7 @@ struct ast_workers {
     int next; /* the first part that nobody has begun */
     int busy; /* workers at a part */
     int failed;
+    int expecting; /* a task comes soon */
     int ending;
 };
 
@@ -43,7 +48,7 @@ struct ast_workers *ast_workers_layout(int count, struct ast_arena *arena) {
     w->count = count;
     w->running = 0;
     w->worker = worker;
-    w->task.parts = w->next = w->busy = w->failed = w->ending = 0;
+    w->task.parts = w->next = w->busy = w->failed = w->expecting = w->ending = 0;
     return w;
 }
 
@@ -62,6 +67,36 @@ static void take_parts(struct ast_workers *w, int number) {
     }
 }
 
+/* With the lock held, before and after. */
+static void look_away(struct ast_workers *w) {
+    (void)pthread_mutex_unlock(&w->lock);
+    (void)sched_yield();
+    (void)pthread_mutex_lock(&w->lock);
+}
+
+/* Until there is a part to do, or the end. With the lock held, before and after. */
+static void await_task(struct ast_workers *w) {
+    int looks = 0;
+    while (!w->ending && w->next >= w->task.parts) {
+        if (w->expecting && looks++ < LOOKS) {
+            look_away(w);
+        } else {
+            (void)pthread_cond_wait(&w->begun, &w->lock);
+            looks = 0;
+        }
+    }
+}
+
+/* Until nobody is at a part. With the lock held, before and after. */
+static void await_others(struct ast_workers *w) {
+    for (int looks = 0; w->busy > 0; looks++) {
+        if (looks < LOOKS)
+            look_away(w);
+        else
+            (void)pthread_cond_wait(&w->done, &w->lock);
+    }
+}
+
 static void *serve(void *argument) {
     struct ast_worker *self = (struct ast_worker *)argument;
     struct ast_workers *w = self->all;
@@ -69,7 +104,7 @@ static void *serve(void *argument) {
     while (!w->ending) {
         take_parts(w, self->number);
         if (w->busy == 0) (void)pthread_cond_signal(&w->done);
-        if (!w->ending) (void)pthread_cond_wait(&w->begun, &w->lock);
+        await_task(w);
     }
     (void)pthread_mutex_unlock(&w->lock);
     return NULL;
@@ -125,14 +160,23 @@ void ast_workers_end(struct ast_workers *w) {
     (void)pthread_mutex_destroy(&w->lock);
 }
 
+void ast_workers_wake(struct ast_workers *w) {
+    if (w == NULL) return;
+    (void)pthread_mutex_lock(&w->lock);
+    w->expecting = 1;
+    (void)pthread_cond_broadcast(&w->begun);
+    (void)pthread_mutex_unlock(&w->lock);
+}
+
 int ast_workers_share(struct ast_workers *w, const struct ast_task *task) {
     if (w == NULL || task->parts < 2) return do_alone(task);
     (void)pthread_mutex_lock(&w->lock);
     w->task = *task;
     w->next = w->failed = 0;
+    w->expecting = task->more;
     (void)pthread_cond_broadcast(&w->begun);
     take_parts(w, 0);
-    while (w->busy > 0) (void)pthread_cond_wait(&w->done, &w->lock);
+    await_others(w);
     const int failed = w->failed;
     (void)pthread_mutex_unlock(&w->lock);
     return failed;
@@ -152,6 +196,10 @@ int ast_workers_start(struct ast_workers *w) {
 }
 
 void ast_workers_end(struct ast_workers *w) {
+    (void)w;
+}
+
+void ast_workers_wake(struct ast_workers *w) {
     (void)w;
 }
 

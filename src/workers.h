@@ -15,6 +15,7 @@ struct ast_task {
     int (*part)(void *shared, int worker, int part);
     void *shared;
     int parts;
+    int more; /* 1: another task comes at once, which is worth staying awake for */
 };
 
 struct ast_workers;
@@ -27,6 +28,8 @@ int ast_workers_start(struct ast_workers *workers);
 /* Ends them; also when they were never started. */
 void ast_workers_end(struct ast_workers *workers);
 
+/* Says that a task comes soon: those who sleep take tens of microseconds to wake. */
+void ast_workers_wake(struct ast_workers *workers);
 /* Has all parts done, each once, in any order, and returns when they are. 0, or a part's failure, after which parts that nobody has
  * begun are left out. */
 int ast_workers_share(struct ast_workers *workers, const struct ast_task *task);

@@ -63,5 +63,6 @@ static int few_cond_destroy(pthread_cond_t *condition) {
 #define ast_workers_start few_threads_workers_start
 #define ast_workers_end few_threads_workers_end
 #define ast_workers_share few_threads_workers_share
+#define ast_workers_wake few_threads_workers_wake
 #include "tracker.c"
 #include "workers.c"

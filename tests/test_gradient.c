@@ -30,6 +30,7 @@ static void lay_out(int side, int count) {
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, AST_PRESET_ROBUST));
     cfg.view = side;
     cfg.gradient_cells = count;
+    cfg.gradient_weight = 1.0f;
     ast_gradient_layout(&gradient, &cfg, &counted);
     free(block);
     block = malloc(counted.used + AST_ALIGNMENT + GUARD);
@@ -296,6 +297,19 @@ static void test_padding_is_never_seen(void) {
 
 /* ---- Cells ---- */
 
+static void test_cells_times_their_weight(void) {
+    enum { EDGE = 40 };
+    static uint8_t pixels[EDGE * EDGE];
+    const ast_frame image = noise_image(pixels, EDGE, EDGE, 11);
+    const ast_box window = {4.25f, 3.5f, 30, 31};
+    float plain[MOST_CELLS];
+    ast_gradient_prepare(&gradient, &image, 30, 31);
+    ast_gradient_cells(&gradient, &window, plain);
+    gradient.weight = 1.4f;
+    ast_gradient_cells(&gradient, &window, cells);
+    for (int i = 0; i < length_of(); i++) TEST_ASSERT_TRUE(cells[i] == plain[i] * 1.4f);
+}
+
 static double bilinear(double x, double y, int k) {
     const int left = (int)floor(x), top = (int)floor(y);
     const int x0 = clamped(left, gradient.width), x1 = clamped(left + 1, gradient.width);
@@ -455,6 +469,7 @@ int main(void) {
     RUN_TEST(test_maps_forget_the_last_image);
     RUN_TEST(test_no_byte_outside_the_image_is_read);
     RUN_TEST(test_padding_is_never_seen);
+    RUN_TEST(test_cells_times_their_weight);
     RUN_TEST(test_cells_are_read_off_the_maps);
     RUN_TEST(test_a_window_outside_repeats_the_corner);
     RUN_TEST(test_cells_have_unit_norm);

@@ -87,21 +87,25 @@ static void test_a_panel_product_is_the_sums_in_order_on_every_instruction_set(v
 /* ---- Vectors ---- */
 
 static void test_departing_subtracts_and_measures(void) {
-    enum { LONGEST = 200 };
-    static float origin[LONGEST], x[LONGEST], moved[LONGEST];
+    enum { LONGEST = 200, APART = LONGEST + 3, COUNT = 6 }; /* six: some side by side, some alone */
+    static float origin[LONGEST], x[COUNT * APART], plain[COUNT * APART], moved[COUNT * APART];
     struct noise noise = {3};
     noise_fill(&noise, origin, LONGEST, -1, 1);
-    noise_fill(&noise, x, LONGEST, -1, 1);
+    noise_fill(&noise, x, COUNT * APART, -1, 1);
     for (int n = 0; n < LONGEST; n = n < 40 ? n + 1 : n + 23) {
-        float plain[LONGEST];
+        ast_real square[COUNT], found[COUNT];
         memcpy(plain, x, sizeof plain);
-        const ast_real square = ast_kernels_plain.depart(plain, origin, n);
-        for (int d = 0; d < LONGEST; d++) TEST_ASSERT_TRUE(plain[d] == (d < n ? x[d] - origin[d] : x[d]));
-        TEST_ASSERT_TRUE(square == ast_dot(plain, plain, n));
+        ast_kernels_plain.depart(plain, APART, COUNT, origin, n, square);
+        for (int i = 0; i < COUNT * APART; i++) {
+            const int d = i % APART;
+            TEST_ASSERT_TRUE(plain[i] == (d < n ? x[i] - origin[d] : x[i]));
+        }
+        for (int i = 0; i < COUNT; i++) TEST_ASSERT_TRUE(square[i] == ast_dot(plain + i * APART, plain + i * APART, n));
         for (int i = 1; ast_kernels_at(i) != NULL; i++) {
             memcpy(moved, x, sizeof moved);
-            TEST_ASSERT_TRUE(square == ast_kernels_at(i)->depart(moved, origin, n));
-            TEST_ASSERT_EQUAL_MEMORY(plain, moved, sizeof moved);
+            ast_kernels_at(i)->depart(moved, APART, COUNT, origin, n, found);
+            TEST_ASSERT_EQUAL_MEMORY(square, found, sizeof square);
+            TEST_ASSERT_EQUAL_MEMORY(plain, moved, sizeof plain);
         }
     }
 }

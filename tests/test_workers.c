@@ -54,7 +54,7 @@ static int count_part(void *shared, int worker, int part) {
 }
 
 static int share(int (*part)(void *, int, int), void *shared, int parts) {
-    const struct ast_task task = {part, shared, parts};
+    const struct ast_task task = {part, shared, parts, parts % 2};
     return ast_workers_share(workers, &task);
 }
 
@@ -73,6 +73,23 @@ static void test_every_part_is_done_once(void) {
         }
         close_workers();
     }
+}
+
+/* Those who were woken find a task, or go back to sleep without one. */
+static void test_waking_changes_nothing(void) {
+    for (int count = 1; count <= MOST_WORKERS; count++) {
+        open_workers(count);
+        for (int round = 0; round < 50; round++) {
+            struct tally tally = {.fail_at = -1};
+            ast_workers_wake(workers);
+            if (round % 3 == 0) ast_workers_wake(workers);
+            if (round % 5 == 0) continue;
+            TEST_ASSERT_EQUAL_INT(0, share(count_part, &tally, MOST_PARTS - round % 2));
+            for (int part = 0; part < MOST_PARTS - round % 2; part++) TEST_ASSERT_EQUAL_INT(1, tally.done[part]);
+        }
+        close_workers();
+    }
+    ast_workers_wake(NULL);
 }
 
 static void test_one_worker_needs_no_memory(void) {
@@ -160,6 +177,7 @@ static void test_end_without_a_start(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_part_is_done_once);
+    RUN_TEST(test_waking_changes_nothing);
     RUN_TEST(test_one_worker_needs_no_memory);
     RUN_TEST(test_failure_ends_the_task_and_the_next_one_is_whole);
     RUN_TEST(test_parts_are_done_at_the_same_time_and_signals_are_the_callers);
