@@ -961,7 +961,13 @@ static void track_with_all(int kind, int normalisation, int frames) {
     ast_config cfg;
     ast_tracker *tracker[TRACKERS];
     struct render render;
-    TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, AST_PRESET_TINY));
+    TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, AST_PRESET_PAPER));
+    cfg.view = 48;
+    cfg.view_object = 16;
+    cfg.patch_width = 16;
+    cfg.patch_height = 16;
+    cfg.bag_size = 5;
+    cfg.alpha = 2.0f;
     cfg.particles = 50; /* a tile, and a part of one */
     cfg.basis = kind == CENTRED ? AST_BASIS_CENTRED : AST_BASIS_RAW;
     cfg.model = kind == LINEAR ? AST_MODEL_LINEAR : AST_MODEL_AFFINE;
