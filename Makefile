@@ -393,6 +393,14 @@ test-32: unity ## the C tests with 32-bit addresses, by a cross-compiler of X86_
 	    CFLAGS='-O2 -msse2 -mfpmath=sse' \
 	    LDFLAGS='-Wl,--dynamic-linker=/usr/$(X86_32)/lib/ld-linux.so.2 -Wl,-rpath,/usr/$(X86_32)/lib' test-c
 
+# Single precision throughout, as in firmware: what tests allow then is in tests/support_precision.h. Those of the command and of the
+# bench compute nothing of their own.
+.PHONY: test-single
+single_tests := $(filter-out test_command% test_bench%,$(test_sources:tests/%.c=%))
+test-single: unity ## the C tests with ast_real float, as in firmware
+	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=no NATIVE=no BACKEND=builtin BUILDDIR=$(BUILDDIR)/single CFLAGS=-O1 \
+	    CPPFLAGS=-DAST_REAL=float TESTS='$(or $(TESTS),$(single_tests))' test-c
+
 # ---- Checks ----
 
 .PHONY: size symbols stack stack-objects accuracy accuracy-tables lint analyse memcheck format format-check

@@ -260,6 +260,7 @@ typedef struct ast_tracker ast_tracker; /* opaque; lives inside the block given 
 /* Bytes that ast_init needs for this configuration, whatever the block's alignment; a function of the configuration (and the
  * build) alone, never of a frame. 0 when the configuration is not valid. */
 AST_API size_t ast_mem_size(const ast_config *cfg);
+/* AST_MEM_SIZE, at the end of this header, is an upper bound of it for an array's length. */
 
 /* Builds a tracker in mem (mem_size bytes, any address, the caller's to keep until ast_free and to release afterwards), or, with
  * mem == NULL, in one allocation of its own that ast_free releases. *cfg is copied. On an error *out is untouched.
@@ -365,6 +366,88 @@ typedef struct ast_distance {
  * remaining absent ones pi/2. work as above, ast_subspace_work_size(dim, n). Errors as above. */
 AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_subspace *b, float alpha, ast_distance *out,
                                               void *work, size_t work_size);
+
+/* ---- The block's size at compile time ---- */
+
+/* At least ast_mem_size for a configuration with these fields, and at most 768 bytes more for each of its threads: a constant
+ * expression, so that
+ *
+ *     static unsigned char block[AST_MEM_SIZE_TINY];
+ *
+ * is a tracker's block without a heap. patch_width and patch_height: 0 when patch_weight is 0; gradient_cells: 0 when gradient_weight
+ * is 0. For the built-in linear algebra (LAPACK says only when it runs how much it needs) and AST_SCORING_GRAM. Compile with the
+ * library's own AST_REAL and AST_LANES, if it was built with any. */
+#define AST_MEM_SIZE(particles, view, patch_width, patch_height, gradient_cells, history, basis_size, bag_size, background,        \
+                     threads)                                                                                                      \
+    AST_MEM_OF_((size_t)(particles), (size_t)(view), (size_t)(patch_width), (size_t)(patch_height), (size_t)(gradient_cells),      \
+                (size_t)(history), (size_t)(basis_size), (size_t)(bag_size), (size_t)(background), (size_t)(threads))
+
+/* The presets as they are. */
+#define AST_MEM_SIZE_PAPER AST_MEM_SIZE(600, 0, 32, 32, 0, 3, 3, 10, 0, 1)
+#define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 128, 16, 16, 12, 3, 2, 18, 40, 1)
+#define AST_MEM_SIZE_TINY AST_MEM_SIZE(92, 48, 16, 16, 0, 2, 1, 5, 8, 1)
+#define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 96, 12, 12, 8, 3, 2, 10, 32, 1)
+
+/* What it is made of: no business of a program. Bytes of the library's own structs at most, which it checks as it is compiled; then
+ * the arrays, each on a boundary of 64 bytes, in the order of ast_init. N, v, pw, ph, c, P, n, k, b, T: the fields above. */
+#define AST_MEM_TRACKER_ (768 + 80 * sizeof(void *))
+#define AST_MEM_DESK_ (64 + 40 * sizeof(void *))
+#define AST_MEM_CREW_ 512
+#define AST_MEM_WORKER_ 64
+#if defined(AST_REAL)
+#define AST_MEM_REAL_ sizeof(AST_REAL)
+#elif defined(ARDUINO)
+#define AST_MEM_REAL_ sizeof(float)
+#else
+#define AST_MEM_REAL_ sizeof(double)
+#endif
+#if defined(AST_LANES)
+#define AST_MEM_LANES_ ((size_t)AST_LANES)
+#elif defined(ARDUINO)
+#define AST_MEM_LANES_ ((size_t)4)
+#else
+#define AST_MEM_LANES_ ((size_t)16)
+#endif
+#define AST_MEM_MOST_(a, b) ((a) > (b) ? (a) : (b))
+#define AST_MEM_LEAST_(a, b) ((a) < (b) ? (a) : (b))
+#define AST_MEM_BYTES_(bytes) (((bytes) + 63) / 64 * 64)
+#define AST_MEM_FLOATS_(count) AST_MEM_BYTES_((count) * sizeof(float))
+#define AST_MEM_REALS_(count) AST_MEM_BYTES_((count)*AST_MEM_REAL_)
+#define AST_MEM_TILES_(count) AST_MEM_REALS_((count)*AST_MEM_LANES_)
+/* floats of a feature vector, and from one to the next; columns of the product */
+#define AST_MEM_DIM_(pw, ph, c) ((pw) * (ph) + 8 * (c) * (c))
+#define AST_MEM_LINES_(dim) (((dim) + 15) / 16 * 16)
+#define AST_MEM_STRIDE_(dim) (AST_MEM_LINES_(dim) + (AST_MEM_LINES_(dim) % 512 == 0 ? 16 : 0))
+#define AST_MEM_COLUMNS_(P, n, k, b) (1 + (P) + ((b) > 0 ? 1 + (b) : 0) + (k) * ((n) + 1))
+#define AST_MEM_AXIS_(length) (3 * AST_MEM_FLOATS_(length) + AST_MEM_FLOATS_(32 * (length)))
+#define AST_MEM_RESAMPLER_(width)                                                                                                  \
+    (AST_MEM_AXIS_(width) + AST_MEM_AXIS_(AST_MEM_LANES_) +                                                                        \
+     AST_MEM_FLOATS_((AST_MEM_LANES_ < 16 ? (size_t)32 : (size_t)160) * AST_MEM_LANES_))
+#define AST_MEM_VIEW_(v, side)                                                                                                     \
+    ((v) > 0 ? AST_MEM_BYTES_((v) * (v)) + AST_MEM_FLOATS_((side)*AST_MEM_LANES_) + AST_MEM_RESAMPLER_(side) : 0)
+#define AST_MEM_GRADIENT_(v, c) ((c) > 0 ? AST_MEM_BYTES_((v) * (v)*8) + AST_MEM_FLOATS_((v)*16) : 0)
+#define AST_MEM_FRAME_(P, n, k, b, columns)                                                                                        \
+    (3 * AST_MEM_REALS_(P) + 2 * AST_MEM_REALS_((P) * (P)) + AST_MEM_REALS_(k) + AST_MEM_REALS_((k) * (n)) +                       \
+     AST_MEM_REALS_((k) * (n) * (n)) + AST_MEM_FLOATS_((b) * (b)) + AST_MEM_FLOATS_((b) * ((columns) - (b))) +                     \
+     AST_MEM_FLOATS_((columns) * ((P) + 1)) + ((b) > 0 ? AST_MEM_FLOATS_((columns) * (1 + (b))) : 0))
+#define AST_MEM_TILE_(P, n, b, columns)                                                                                            \
+    (AST_MEM_FLOATS_((columns)*AST_MEM_LANES_) * ((b) > 0 ? (size_t)1 : (size_t)2) + 6 * AST_MEM_TILES_(1) + AST_MEM_TILES_(P) +   \
+     2 * AST_MEM_TILES_(((P) + 1) * ((P) + 1)) + AST_MEM_TILES_(AST_MEM_MOST_((P) + 1, n)) + 2 * AST_MEM_TILES_(n) +               \
+     2 * AST_MEM_TILES_((n) * (n)) + AST_MEM_TILES_((n) + 1) + AST_MEM_FLOATS_((b)*AST_MEM_LANES_))
+#define AST_MEM_DESKS_(pw, ph, dim, P, n, b, columns, T)                                                                           \
+    ((T) * (((pw) * (ph) > 0 ? AST_MEM_RESAMPLER_(pw) : 0) + AST_MEM_TILE_(P, n, b, columns) +                                     \
+            AST_MEM_REALS_((dim) * ((P) + 1) + 2 * ((P) + 1))) +                                                                   \
+     AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * AST_MEM_MOST_(AST_MEM_LANES_, (P) + 1)) +                                              \
+     ((T)-1) * AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * AST_MEM_LANES_) + AST_MEM_BYTES_((T)*AST_MEM_DESK_) +                        \
+     ((T) > 1 ? AST_MEM_CREW_ + AST_MEM_BYTES_((T)*AST_MEM_WORKER_) : 0))
+#define AST_MEM_SUM_(N, v, pw, ph, c, dim, P, n, k, b, columns, T)                                                                 \
+    (63 + AST_MEM_BYTES_(AST_MEM_TRACKER_) + 8 * AST_MEM_FLOATS_(N) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (P)) +                \
+     AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (columns)) + AST_MEM_BYTES_((k) * sizeof(int)) + AST_MEM_REALS_((k) * (n)) +           \
+     AST_MEM_BYTES_(columns) + 2 * AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim)) +                                                         \
+     AST_MEM_VIEW_(v, AST_MEM_LEAST_(v, 4 * AST_MEM_LANES_)) + AST_MEM_GRADIENT_(v, c) + AST_MEM_FRAME_(P, n, k, b, columns) +     \
+     AST_MEM_DESKS_(pw, ph, dim, P, n, b, columns, T) + AST_MEM_FLOATS_((N) * (k)) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (n)))
+#define AST_MEM_OF_(N, v, pw, ph, c, P, n, k, b, T)                                                                                \
+    AST_MEM_SUM_(N, v, pw, ph, c, AST_MEM_DIM_(pw, ph, c), P, n, k, b, AST_MEM_COLUMNS_(P, n, k, b), T)
 
 #ifdef __cplusplus
 }

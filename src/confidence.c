@@ -11,9 +11,12 @@ static ast_real correlation(const float *x, const float *y, int n) {
         sum_y += (ast_real)y[d];
     }
     const ast_real cross = ast_dot(x, y, n) - sum_x * sum_y / (ast_real)n;
-    const ast_real xx = ast_dot(x, x, n) - sum_x * sum_x / (ast_real)n, yy = ast_dot(y, y, n) - sum_y * sum_y / (ast_real)n;
-    const ast_real flat = (ast_real)1e-9 * (ast_real)n;
-    return xx > flat && yy > flat ? cross / ast_sqrt(xx * yy) : 0;
+    const ast_real xx = ast_dot(x, x, n), yy = ast_dot(y, y, n);
+    const ast_real around_x = xx - sum_x * sum_x / (ast_real)n, around_y = yy - sum_y * sum_y / (ast_real)n;
+    /* What rounding of the sums leaves of a flat vector's, which in single precision is more than the rest. */
+    const ast_real rounding = ast_real_epsilon() * (ast_real)n, flat = (ast_real)1e-9 * (ast_real)n;
+    const int varies = around_x > flat && around_y > flat && around_x > rounding * xx && around_y > rounding * yy;
+    return varies ? cross / ast_sqrt(around_x * around_y) : 0;
 }
 
 float ast_confidence_score(const float *patch, const float *anchor, const struct ast_bag *bag) {

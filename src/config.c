@@ -183,20 +183,21 @@ int ast_config_preset(ast_config *cfg, int preset) {
     /* Copied byte for byte: an assignment may leave the padding as it was. */
     case AST_PRESET_PAPER: memcpy(cfg, &paper, sizeof *cfg); return AST_OK;
     case AST_PRESET_ROBUST: memcpy(cfg, &robust, sizeof *cfg); return AST_OK;
-    case AST_PRESET_TINY:
-        memcpy(cfg, &paper, sizeof *cfg);
-        cfg->particles = 84;
+    case AST_PRESET_TINY: /* grey patches alone, with the robust one's decisions: docs/firmware.md */
+        memcpy(cfg, &robust, sizeof *cfg);
+        cfg->particles = 92;
+        cfg->walk_y = 3.0f;
         cfg->view = 48; /* patches from the whole frame would take most of the time */
         cfg->view_object = 16;
-        cfg->patch_width = 16;
-        cfg->patch_height = 16;
+        cfg->gradient_weight = 0.0f;
+        cfg->history = 2;
+        cfg->basis_size = 1;
         cfg->bag_size = 5;
-        cfg->bag_interval = 10;
-        /* A camera left to itself must find again what it lost. A guard needs that single frames are right: more weight on the means. */
-        cfg->alpha = 2.0f;
-        cfg->keep_first = AST_YES;
-        cfg->guard = 0.6f;
-        cfg->lost_after = 2;
+        cfg->background = 8;
+        cfg->background_refresh = 2;
+        cfg->ridge = 0.03f;
+        cfg->sigma = 0.05f;
+        cfg->recall = 0.85f;
         return AST_OK;
     case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
         memcpy(cfg, &robust, sizeof *cfg);

@@ -112,8 +112,8 @@ static int eigenvalues_of_three(const ast_real *restrict a, ast_real *restrict v
         values[l] = largest;
         values[2 * AST_LANES + l] = least;
         values[AST_LANES + l] = 3 * q - largest - least;
-        const ast_real by_distance = p > (ast_real)0.02 * ast_fabs(q) ? 0 : 1,
-                       by_angle = ast_fabs(half) <= (ast_real)0.9999 ? 0 : 1;
+        const ast_real by_distance = p > (ast_real)0.02 * ast_fabs(q) ? (ast_real)0 : (ast_real)1,
+                       by_angle = ast_fabs(half) <= (ast_real)0.9999 ? (ast_real)0 : (ast_real)1;
         close[l] = by_distance > by_angle ? by_distance : by_angle;
     }
     for (int l = 0; l < AST_LANES; l++) refused += close[l] > 0;

@@ -144,7 +144,7 @@ static void decompose(const struct ast_gram *s, struct ast_gram_tile *t) {
         const ast_real *value = t->values + a * AST_LANES, *before = a > 0 ? absent - AST_LANES : NULL;
         for (int l = 0; l < AST_LANES; l++) {
             const ast_real singular = ast_sqrt(value[l] > 0 ? value[l] : 0);
-            const ast_real counted = singular > AST_RANK_TOLERANCE * norm[l] ? 0 : 1;
+            const ast_real counted = singular > AST_RANK_TOLERANCE * norm[l] ? (ast_real)0 : (ast_real)1;
             absent[l] = before != NULL && before[l] > counted ? before[l] : counted;
         }
         for (int k = 0; k < m; k++) {

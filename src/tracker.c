@@ -13,6 +13,10 @@
 
 /* ---- Memory ---- */
 
+/* What AST_MEM_SIZE counts on. */
+typedef char ast_tracker_within_bound[sizeof(struct ast_tracker) <= AST_MEM_TRACKER_ ? 1 : -1];
+typedef char ast_desk_within_bound[sizeof(struct ast_desk) <= AST_MEM_DESK_ ? 1 : -1];
+
 static void cloud_layout(struct ast_cloud *cloud, int count, struct ast_arena *arena) {
     cloud->count = count;
     cloud->x = ast_arena_take(arena, (size_t)count, sizeof *cloud->x);

@@ -3,6 +3,8 @@
 #endif
 #include "workers.h"
 
+#include "asttrack.h"
+
 static int do_alone(const struct ast_task *task) {
     int failed = 0;
     for (int part = 0; part < task->parts && !failed; part++) failed = task->part(task->shared, 0, part);
@@ -39,6 +41,10 @@ struct ast_workers {
     int expecting; /* a task comes soon */
     int ending;
 };
+
+/* What AST_MEM_SIZE counts on. */
+typedef char ast_workers_within_bound[sizeof(struct ast_workers) <= AST_MEM_CREW_ ? 1 : -1];
+typedef char ast_worker_within_bound[sizeof(struct ast_worker) <= AST_MEM_WORKER_ ? 1 : -1];
 
 struct ast_workers *ast_workers_layout(int count, struct ast_arena *arena) {
     if (count < 2) return NULL;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "eigen.h"
+#include "support_precision.h"
 
 static const char *fault = "";
 
@@ -53,7 +54,7 @@ int golden_next(FILE *file, struct golden_case *golden) {
 }
 
 double golden_angle_slack(double angle) {
-    const double cosine = 4 * (double)FLT_EPSILON, far = cosine / (sin(angle) + 1e-300), near = sqrt(2 * cosine);
+    const double cosine = real_cosine_slack(), far = cosine / (sin(angle) + 1e-300), near = sqrt(2 * cosine);
     return cosine + (far < near ? far : near);
 }
 
@@ -69,9 +70,11 @@ static double mean_at(const struct golden_set *set, int dim, int d) {
     return sum / set->count;
 }
 
-/* Whether the n-th singular value of a set equals the next: then any of many bases is dominant, and the term depends on which. */
-static int is_ambiguous(const struct golden_set *set, const struct golden_case *golden) {
+/* Whether the n-th singular value of a set equals the next: then any of many bases is dominant, and the term depends on which.
+ * *condition is raised to the set's: its norm over the least singular value that counts. */
+static int is_ambiguous(const struct golden_set *set, const struct golden_case *golden, double *condition) {
     const int count = set->count, dim = golden->dim, n = golden->n;
+    double norm = 0;
     ast_real scatter[GOLDEN_MOST_IMAGES * GOLDEN_MOST_IMAGES], squares[GOLDEN_MOST_IMAGES];
     for (int i = 0; i < count * count; i++) {
         const float *x = set->images + i / count * dim, *y = set->images + i % count * dim;
@@ -81,7 +84,9 @@ static int is_ambiguous(const struct golden_set *set, const struct golden_case *
             scatter[i] += (ast_real)(((double)x[d] - origin) * ((double)y[d] - origin));
         }
     }
+    for (int j = 0; j < count; j++) norm += (double)scatter[j * count + j];
     ast_eigen_symmetric(count, scatter, squares, NULL);
+    if (set->rank > 0) *condition = fmax(*condition, sqrt(norm / fmax((double)squares[set->rank - 1], 1e-10 * norm)));
     return set->rank == n && n < count && squares[n - 1] - squares[n] < (ast_real)1e-5 * squares[n - 1];
 }
 
@@ -93,7 +98,9 @@ double golden_mahalanobis_slack(const struct golden_case *golden) {
         length += (a - b) * (a - b);
         size += a * a + b * b;
     }
-    if (is_ambiguous(&golden->a, golden) || is_ambiguous(&golden->b, golden)) return 2 * length;
+    double condition = 1;
+    if (is_ambiguous(&golden->a, golden, &condition) || is_ambiguous(&golden->b, golden, &condition)) return 2 * length;
     const double of_means = (double)FLT_EPSILON * sqrt(size), of_difference = (double)FLT_EPSILON * sqrt(length);
-    return 4 * (of_means + of_difference) * (sqrt(length) + of_means);
+    return real_cosine_slack() / (double)FLT_EPSILON * (of_means + of_difference) * (sqrt(length) + of_means) +
+           real_basis_slack(condition) * length;
 }

@@ -10,6 +10,7 @@
 #include "metric.h"
 #include "subspace.h"
 #include "support_matrix.h"
+#include "support_precision.h"
 #include "support_render.h"
 #include "support_tracker.h"
 #include "unity.h"
@@ -251,7 +252,8 @@ static void assert_agrees(const ast_config *cfg, const struct ast_linalg *la, in
 
 /* Both bases, with and without the ratio, histories and bases of all kinds, ridges from the least to a large one. */
 static void test_distances_are_the_dense_ones(void) {
-    static const int shapes[][2] = {{1, 1}, {1, 2}, {3, 3}, {4, 2}, {6, 7}}; /* P, n */
+    /* P, n. The sixth direction of seven vectors that follow each other is all but absent: in single precision rounding decides. */
+    const int shapes[][2] = {{1, 1}, {1, 2}, {3, 3}, {4, 2}, {6, AST_REAL_IS_DOUBLE ? 7 : 4}};
     static const float ridges[] = {1e-4f, 0.01f, 0.1f, 100.0f};
     for (int b = 0; b < BACKENDS; b++)
         for (int which = 0; which < 20; which++) {
@@ -265,7 +267,7 @@ static void test_distances_are_the_dense_ones(void) {
             if (which % 4 == 3) cfg.gradient_weight = 0.0f;
             snprintf(label, sizeof label, "%s, P %d, n %d, %s, ratio %g, ridge %g", backends[b]->name, cfg.history, cfg.basis_size,
                      cfg.basis == AST_BASIS_RAW ? "raw" : "centred", (double)cfg.background_ratio, (double)cfg.ridge);
-            assert_agrees(&cfg, backends[b], cfg.history + 4, 9, 1e-4);
+            assert_agrees(&cfg, backends[b], cfg.history + 4, 9, by_real(1e-4, 3e-4));
         }
 }
 
@@ -363,7 +365,7 @@ static void test_histories_that_are_nearly_frozen(void) {
                 snprintf(label, sizeof label, "%s, %s, %g apart", backends[b]->name, which ? "centred" : "raw", apart);
                 const double worst = difference(t, vectors, 6);
                 if (getenv("AST_TEST_VERBOSE")) printf("%s: %g\n", label, worst);
-                TEST_ASSERT_TRUE_MESSAGE(worst < (apart > 5e-4 ? 1e-4 : 1e-3), label);
+                TEST_ASSERT_TRUE_MESSAGE(worst < (apart > 5e-4 ? 1e-4 : 1e-3) + fmin(real_basis_slack(1 / apart), 0.1), label);
             }
             free(base);
             ast_free(t);
@@ -412,7 +414,8 @@ static void test_candidates_that_hardly_leave_the_history(void) {
         for (int which = 0; which < 12; which++) {
             ast_config cfg = bench_config(which);
             cfg.ridge = ridges[which / 2 % 3];
-            cfg.basis_size = which < 6 ? 3 : 4;
+            /* A centred set of four has three directions; in single precision rounding may pass for a fourth. */
+            cfg.basis_size = which < 6 || !AST_REAL_IS_DOUBLE ? 3 : 4;
             ast_tracker *t = bench_new(&cfg, backends[b]);
             float *vectors = calloc((size_t)(LENGTHS * t->stride), sizeof *vectors);
             double *mean = matrix_new(t->dim, 1), *way = matrix_new(t->dim, 1), *off = matrix_new(t->dim, 1);
@@ -437,7 +440,8 @@ static void test_candidates_that_hardly_leave_the_history(void) {
                          which & 1 ? "centred" : "raw", cfg.basis_size, (double)cfg.ridge, outside[i]);
                 const double worst = difference(t, vectors + i * t->stride, 1);
                 if (getenv("AST_TEST_VERBOSE")) printf("%s: %g\n", label, worst);
-                TEST_ASSERT_TRUE_MESSAGE(worst < 1e-3, label);
+                TEST_ASSERT_TRUE_MESSAGE(worst < by_real(1e-3, 5e-2),
+                                         label); /* in single precision its rounding is near the least */
             }
             free(vectors), free(mean), free(way), free(off);
             ast_free(t);

@@ -24,7 +24,7 @@ static void test_matches_the_definition_at_every_length(void) {
     for (int n = 0; n <= LONGEST; n = n < 70 ? n + 1 : n + 110) {
         noise_fill(&noise, x, (size_t)n, -1, 1);
         noise_fill(&noise, y, (size_t)n, -1, 1);
-        TEST_ASSERT_DOUBLE_WITHIN(4 * ast_real_epsilon() * n, reference_dot(x, y, n), ast_dot(x, y, n));
+        TEST_ASSERT_DOUBLE_WITHIN(4 * (double)ast_real_epsilon() * n, reference_dot(x, y, n), ast_dot(x, y, n));
     }
 }
 

@@ -65,14 +65,15 @@ $(firmware_hosts): $(firmware_dir)/host-%/program: $$(call firmware_objects,host
 	$(quiet)$(CC) -o $@ $^
 
 # Instructions, counted by the emulator; it has room for what a microcontroller's RAM has not.
-$(firmware_dir)/m7-single/instructions.elf: $(call firmware_objects,m7-single,instructions say small_scene board_mps2) examples/cortex-m7/mps2.ld
+firmware_counters := $(firmware_dir)/m7-single/instructions.elf $(firmware_dir)/m4-single/instructions.elf
+$(firmware_counters): $(firmware_dir)/%/instructions.elf: $$(call firmware_objects,$$*,instructions say small_scene board_mps2) examples/cortex-m7/mps2.ld
 	$(call say,LINK)
-	$(quiet)$(ARM_PREFIX)gcc -mthumb -mfloat-abi=hard $(m7-single_cpu) -nostartfiles -T examples/cortex-m7/mps2.ld -Wl,--gc-sections \
+	$(quiet)$(ARM_PREFIX)gcc -mthumb -mfloat-abi=hard $($*_cpu) -nostartfiles -T examples/cortex-m7/mps2.ld -Wl,--gc-sections \
 	    -Wl,--fatal-warnings -Wl,--defsym=ram_size=4M -o $@ $(filter %.o,$^)
 .PHONY: instructions-firmware
-instructions-firmware: $(firmware_dir)/m7-single/instructions.elf ## instructions a frame on a Cortex-M7, counted by the emulator
-	@timeout 500 $(QEMU_ARM) -M mps2-an500 -icount shift=0 -nographic -monitor none -serial none \
-	    -semihosting-config enable=on,target=native -kernel $<
+instructions-firmware: $(firmware_counters) ## instructions a frame on a Cortex-M7 and a Cortex-M4F, counted by the emulator
+	@$(foreach v,m7-single m4-single,echo "$(v):" && timeout 500 $(QEMU_ARM) -M $($(v)_board) -icount shift=0 -nographic -monitor none \
+	    -serial none -semihosting-config enable=on,target=native -kernel $(firmware_dir)/$(v)/instructions.elf &&) true
 
 test-firmware: $(firmware_images) $(firmware_hosts) ## run the images in the emulator and compare with the host, bit for bit
 	@ARM_PREFIX=$(ARM_PREFIX) QEMU_ARM=$(QEMU_ARM) scripts/test_firmware.sh $(firmware_dir) \

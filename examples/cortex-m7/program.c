@@ -16,13 +16,15 @@
 enum {
     FRAMES_BEFORE_RESET = 40,
     FRAMES_AFTER_RESET = 20,
-    FRAMES_TO_RECOVER = 60,                                       /* at most */
-    STUCK_AFTER = 3,                                              /* equal pictures in a row: a real sensor's noise never repeats */
-    ARENA = (sizeof(AST_REAL) == sizeof(float) ? 60 : 72) * 1024, /* bytes: in single precision it and 4 KiB of stack make 64 KiB */
-    FAR = 10 /* pixels between the centres of box and truth beyond which the object is not followed */
+    FRAMES_TO_RECOVER = 60, /* at most */
+    STUCK_AFTER = 3,        /* equal pictures in a row: a real sensor's noise never repeats */
+    BUDGET = 60 * 1024,     /* bytes of the arena: it and 4 KiB of stack make 64 KiB */
+    FAR = 10                /* pixels between the centres of box and truth beyond which the object is not followed */
 };
 
-static unsigned char arena[ARENA];
+static unsigned char arena[AST_MEM_SIZE_TINY];
+/* On the microcontrollers that the budget is for: 32-bit addresses, single precision. */
+typedef char arena_within_budget[sizeof(void *) > 4 || sizeof(AST_REAL) > sizeof(float) || sizeof arena <= BUDGET ? 1 : -1];
 
 /* What survives a reset. */
 struct record {

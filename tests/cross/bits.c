@@ -71,7 +71,7 @@ int main(void) {
     static const struct {
         const char *name;
         int preset, particles;
-    } runs[] = {{"tiny", AST_PRESET_TINY, 100}, {"robust", AST_PRESET_ROBUST, 60}, {"literal", AST_PRESET_TINY, 20}};
+    } runs[] = {{"tiny", AST_PRESET_TINY, 100}, {"robust", AST_PRESET_ROBUST, 60}, {"literal", AST_PRESET_PAPER, 20}};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         ast_config cfg;
         const int code = ast_config_preset(&cfg, runs[i].preset);

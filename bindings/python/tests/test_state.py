@@ -108,7 +108,8 @@ def test_a_state_of_another_configuration_is_refused() -> None:
         with pytest.raises(AstError) as caught:
             other.restore(state)
         assert caught.value.code is ErrorCode.MISMATCH
-    Tracker("tiny", bag_interval=3, scoring="literal").restore(state)
+    plain: dict[str, Any] = {"background": 0, "background_refresh": 0}  # which every scoring goes with
+    Tracker("tiny", bag_interval=3, scoring="literal", **plain).restore(halfway(**plain).save())
 
 
 @pytest.mark.parametrize("state", [None, 5, "text", [1, 2]])

@@ -219,7 +219,7 @@ def test_a_context_closes() -> None:
     with started() as tracker:
         tracker.update(FRAMES[1])
         inside = (tracker.closed, repr(tracker))
-    assert inside == (False, "<asttrack.Tracker: 84 particles, patches of 16 x 16, bag of 5>")
+    assert inside == (False, "<asttrack.Tracker: 92 particles, patches of 16 x 16, bag of 5>")
     assert (tracker.closed, repr(tracker)) == (True, inside[1].replace(">", ", closed>"))
 
 
@@ -242,7 +242,7 @@ def test_a_closed_tracker_says_so() -> None:
     ):
         with pytest.raises(ValueError, match="this tracker is closed"):
             call()
-    assert tracker.config["particles"] == 84  # what needs no memory still answers
+    assert tracker.config["particles"] == 92  # what needs no memory still answers
 
 
 def test_memory_is_stated_and_depends_on_the_configuration_alone() -> None:

@@ -11,7 +11,7 @@ from asttrack import Tracker, subspace_distance, subspace_fit
 from short_scene import BOXES, FRAMES
 
 
-def tracked(count: int = 12, preset: str = "tiny", **config: Any) -> Tracker:
+def tracked(count: int = 12, preset: str = "paper", **config: Any) -> Tracker:
     """A tracker after `count` updates; patches that are not square, bag and history rings that have gone round."""
     tracker = Tracker(preset, patch_width=12, patch_height=10, bag_interval=1, bag_size=4, particles=64, **config)
     tracker.init(FRAMES[0], BOXES[0])
