@@ -40,6 +40,7 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
         votes += contrast;
     }
     const int equal = cfg->vote == AST_VOTE_EQUAL || !(votes > (ast_real)FLT_MIN);
+    if (equal) votes = (ast_real)models;
     for (int j = 0; j < models; j++) {
         summarise(distance, count, models, j, &least, &contrast);
         ast_real scale = (ast_real)cfg->sigma;
@@ -50,8 +51,7 @@ int ast_decide(const float *distance, int count, int models, const ast_config *c
             const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
             for (int i = 0; i < used; i++) sum += likelihood[i];
         }
-        const ast_real vote = equal ? 1 / (ast_real)models : contrast / votes;
-        const ast_real share = vote / sum;
+        const ast_real share = (equal ? 1 : contrast) / (sum * votes);
         for (int first = 0; first < count; first += BLOCK) {
             const int used = likelihoods(kernels, distance, first, count, models, j, least, rate, likelihood);
             for (int i = 0; i < used; i++) weight[first + i] += (float)(share * likelihood[i]);

@@ -54,35 +54,33 @@ struct ast_resemblance ast_guard_resemblance(const float *vector, const float *a
     return found;
 }
 
-static float towards(float mean, float value, float rate) {
-    return mean + rate * (value - mean);
+/* A running mean goes on; `falling` is the rate where it falls. */
+static void average(struct ast_resemblance *mean, const struct ast_resemblance *seen, float falling) {
+    mean->start += (seen->start < mean->start ? falling : USUAL_RATE) * (seen->start - mean->start);
+    mean->known += (seen->known < mean->known ? falling : USUAL_RATE) * (seen->known - mean->known);
 }
 
-static float slowly_towards(float mean, float value, int32_t frames) {
-    float rate = EARLY_FRAMES / (float)frames;
-    if (rate < LASTING_RATE) rate = LASTING_RATE;
-    return towards(mean, value, value < mean && rate < USUAL_RATE ? rate : USUAL_RATE);
+static float lasting_rate(int32_t frames) {
+    const float early = EARLY_FRAMES / (float)frames;
+    return early > USUAL_RATE ? USUAL_RATE : early < LASTING_RATE ? LASTING_RATE : early;
 }
 
 struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                                 const struct ast_resemblance *resemblance, float spread) {
     struct ast_guard next = *guard;
-    const struct ast_resemblance usual = guard->trusted > 0 ? guard->usual : *resemblance;
-    const struct ast_resemblance lasting = guard->trusted > 0 ? guard->lasting : *resemblance;
-    const int unknown = resemblance->known < cfg->recall * usual.known;
-    const int vanished = lasting.start > FAITHFUL && resemblance->known < VANISHED * lasting.known;
-    const int doubtful = guard->lost
-                             ? unknown || resemblance->start < cfg->reacquire * lasting.start
-                             : unknown && resemblance->start < cfg->guard * lasting.start && (spread > DECIDED_SPREAD || vanished);
+    if (guard->trusted == 0) next.usual = next.lasting = *resemblance;
+    const float start = next.lasting.start;
+    const int unknown = resemblance->known < cfg->recall * next.usual.known;
+    const int vanished = start > FAITHFUL && resemblance->known < VANISHED * next.lasting.known;
+    const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * start
+                                     : unknown && resemblance->start < cfg->guard * start && (spread > DECIDED_SPREAD || vanished);
     if (doubtful) {
         if (next.low < AST_GUARD_LONG) next.low++;
         next.lost = guard->lost || next.low >= cfg->lost_after;
     } else {
         if (next.trusted < AST_GUARD_LONG) next.trusted++;
-        next.usual.start = towards(usual.start, resemblance->start, USUAL_RATE);
-        next.usual.known = towards(usual.known, resemblance->known, USUAL_RATE);
-        next.lasting.start = slowly_towards(lasting.start, resemblance->start, next.trusted);
-        next.lasting.known = slowly_towards(lasting.known, resemblance->known, next.trusted);
+        average(&next.usual, resemblance, USUAL_RATE);
+        average(&next.lasting, resemblance, lasting_rate(next.trusted));
         next.low = 0;
         next.lost = 0;
         next.good = *estimate;

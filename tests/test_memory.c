@@ -145,7 +145,7 @@ static int meet(void *barrier, int worker, int part) {
 /* Until a tracker's threads have begun, which under a sanitizer takes memory: none does a part before all have one. */
 static void wait_for_threads(ast_tracker *t, int threads) {
     pthread_barrier_t all;
-    const struct ast_task meeting = {meet, &all, threads};
+    const struct ast_task meeting = {meet, &all, threads, 0};
     TEST_ASSERT_EQUAL_INT(0, pthread_barrier_init(&all, NULL, (unsigned)threads));
     TEST_ASSERT_EQUAL_INT(0, ast_workers_share(t->workers, &meeting));
     TEST_ASSERT_EQUAL_INT(0, pthread_barrier_destroy(&all));
