@@ -56,7 +56,7 @@ AST_ALWAYS_INLINE void block_product(int block, const float *panel, int depth, c
 
 /* A matrix whose columns are no multiple of COLUMNS ends in narrower blocks: of as many sums as hide how long an addition takes. */
 static void panel_product(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums) {
-    enum { NARROW = VECTORS < 4 ? 4 / VECTORS : 1 };
+    enum { WANTED = VECTORS < 4 ? 4 / VECTORS : 1, NARROW = WANTED < COLUMNS ? WANTED : COLUMNS };
     int c = 0;
     for (; count - c >= COLUMNS; c += COLUMNS)
         block_product(COLUMNS, panel, depth, columns + (size_t)c * ld, ld, COLUMNS, sums + (size_t)c * ld_sums, ld_sums);

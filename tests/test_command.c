@@ -295,8 +295,8 @@ static void test_files_instead_of_a_directory(void) {
  * that some editors put before a text is no part of it. */
 static void test_what_counts(void) {
     static const char *const truths[] = {"30,20,16,14\n1000,20,16,14\n", "30,20,16,14\nnan,nan,nan,nan\n1000,20,16,14\n",
-                                         "\xef\xbb\xbf"
-                                         "30 20 16 14\n0 0 0 0\n1000 20 16 14\n"};
+                                         ("\xef\xbb\xbf"
+                                          "30 20 16 14\n0 0 0 0\n1000 20 16 14\n")};
     static char picture[TEXT_SIZE];
     for (int i = 0; i < 3; i++) {
         make_directory(at("@counted"));

@@ -29,7 +29,7 @@ static void require(int holds, const char *promise, long frame) {
     exit(1);
 }
 
-static void render_film(void) {
+static void render_loop(void) {
     struct render scene;
     render_open(&scene, WIDTH, HEIGHT, 3);
     for (int f = 0; f < LOOP; f++) {
@@ -240,7 +240,7 @@ int main(int argc, char **argv) {
     /* a page that the kernel makes huge in its own time looks like memory that grows */
     (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
     allocations_watch();
-    render_film();
+    render_loop();
     soak("paper preset's parts", AST_PRESET_PAPER, frames);
     soak("robust preset's parts", AST_PRESET_ROBUST, frames);
     crowd(frames / 200 < 100 ? 100 : frames / 200 > 1000 ? 1000 : frames / 200);
