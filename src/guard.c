@@ -65,27 +65,25 @@ static float lasting_rate(int32_t frames) {
     return early > USUAL_RATE ? USUAL_RATE : early < LASTING_RATE ? LASTING_RATE : early;
 }
 
-struct ast_guard ast_guard_next(const struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
-                                const struct ast_resemblance *resemblance, float spread) {
-    struct ast_guard next = *guard;
-    if (guard->trusted == 0) next.usual = next.lasting = *resemblance;
-    const float start = next.lasting.start;
-    const int unknown = resemblance->known < cfg->recall * next.usual.known;
-    const int vanished = start > FAITHFUL && resemblance->known < VANISHED * next.lasting.known;
+void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
+                   const struct ast_resemblance *resemblance, float spread) {
+    if (guard->trusted == 0) guard->usual = guard->lasting = *resemblance;
+    const float start = guard->lasting.start;
+    const int unknown = resemblance->known < cfg->recall * guard->usual.known;
+    const int vanished = start > FAITHFUL && resemblance->known < VANISHED * guard->lasting.known;
     const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * start
                                      : unknown && resemblance->start < cfg->guard * start && (spread > DECIDED_SPREAD || vanished);
     if (doubtful) {
-        if (next.low < AST_GUARD_LONG) next.low++;
-        next.lost = guard->lost || next.low >= cfg->lost_after;
+        if (guard->low < AST_GUARD_LONG) guard->low++;
+        if (guard->low >= cfg->lost_after) guard->lost = 1;
     } else {
-        if (next.trusted < AST_GUARD_LONG) next.trusted++;
-        average(&next.usual, resemblance, USUAL_RATE);
-        average(&next.lasting, resemblance, lasting_rate(next.trusted));
-        next.low = 0;
-        next.lost = 0;
-        next.good = *estimate;
+        if (guard->trusted < AST_GUARD_LONG) guard->trusted++;
+        average(&guard->usual, resemblance, USUAL_RATE);
+        average(&guard->lasting, resemblance, lasting_rate(guard->trusted));
+        guard->low = 0;
+        guard->lost = 0;
+        guard->good = *estimate;
     }
-    return next;
 }
 
 int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance,

@@ -435,7 +435,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
         const struct ast_resemblance resemblance =
             ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
         const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
-        guard = ast_guard_next(&t->guard, &t->cfg, &found, &resemblance, spread);
+        ast_guard_see(&guard, &t->cfg, &found, &resemblance, spread);
         const struct ast_evidence evidence = {resemblance.start, spread, ast_frame_share(frame, &found_box)};
         score = ast_confidence_probability(&evidence);
         selected = t->bag.count < t->bag.capacity || ast_guard_selects(&t->guard, &t->cfg, &resemblance, score);

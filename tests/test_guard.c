@@ -39,7 +39,7 @@ void tearDown(void) {
 /* One frame. */
 static void see(float likeness_to_start, float likeness_to_known, float spread) {
     const struct ast_resemblance resemblance = {likeness_to_start, likeness_to_known};
-    guard = ast_guard_next(&guard, &cfg, &seen, &resemblance, spread);
+    ast_guard_see(&guard, &cfg, &seen, &resemblance, spread);
 }
 
 static void get_lost(int frames) {
