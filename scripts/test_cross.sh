@@ -44,6 +44,11 @@ command_of() {
     if [ "$1" = gcc ]; then command=("$2" -fexcess-precision=fast); else command=(clang --target="$3"); fi
 }
 
+# clang 14 for s390x, as soon as it optimises, gets sums of floats in double wrong, in plain C (or the emulator does): docs/firmware.md
+left_out() {
+    [ "$1-$2" = s390x-clang ]
+}
+
 # bits TARGET EMULATOR COMPILER OPTIMISATION REAL COMMAND...: leaves what the program printed, or why there is none
 bits() {
     local emulator=$2 output=$results/bits-$1-$3$4-$5 optimisation=$4 real=$5 program
@@ -92,6 +97,11 @@ done
 for row in "${chosen[@]}"; do
     IFS='|' read -r target emulator gcc clang_target <<<"$row"
     for compiler in "${compilers[@]}"; do
+        if left_out "$target" "$compiler"; then
+            echo "  skip $target by $compiler: docs/firmware.md says why"
+            skipped=$((skipped + 1))
+            continue
+        fi
         command_of "$compiler" "$gcc" "$clang_target"
         for optimisation in "${optimisations[@]}"; do
             for real in double float; do at_once bits "$target" "$emulator" "$compiler" "$optimisation" "$real" "${command[@]}"; done
@@ -110,6 +120,7 @@ table=()
 for row in "${chosen[@]}"; do
     IFS='|' read -r target _ <<<"$row"
     for compiler in "${compilers[@]}"; do
+        if left_out "$target" "$compiler"; then continue; fi
         equal=0 builds=0
         for optimisation in "${optimisations[@]}"; do
             for real in double float; do
