@@ -188,19 +188,18 @@ typedef struct ast_config {
     int32_t vote;       /* AST_VOTE_* */
     int32_t scoring;    /* AST_SCORING_* */
 
-    /* Guard: what the tracker learns from, and what it does when the object is gone */
-    float
-        guard; /* least likeness to the start, relative to the lasting one, of a frame that is learned from, 0 .. 1; 0: no guard */
-    float recall;    /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
+    /* Guard: what the tracker learns from, and what it does when the object is gone. Likenesses are relative to what they were: recall's
+     * and selective's to a mean of about the last 20 frames, guard's and reacquire's to one that is slower to fall. */
+    float guard;  /* least likeness to the start of a frame that is learned from, 0 .. 1; 0: no guard, and none of the next three */
+    float recall; /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
     float reacquire; /* least likeness to the start that ends AST_LOST, beside recall's, 0 .. 1 */
-    float
-        selective; /* with a guard and a full bag: least likeness to the start of a frame whose model takes another's place, 0 .. 1 */
+    float selective; /* least likeness to the start of a frame whose model takes another's place in a full bag, 0 .. 1 */
 
     /* Confidence */
     float score_uncertain; /* below this score a frame is doubtful, 0 .. 1 */
-    float score_lost;   /* without a guard: below this score a frame counts towards AST_LOST, with one it takes no place in a full
-                            * bag, 0 .. score_uncertain */
-    int32_t lost_after; /* consecutive frames that count (with a guard: that it refuses) and make AST_LOST, 1 .. 10000 */
+    float score_lost;      /* below this score, 0 .. score_uncertain, a frame counts towards AST_LOST (without a guard), or takes no
+                              place in a full bag (with one) */
+    int32_t lost_after;    /* consecutive frames that count (with a guard: that it refuses) and make AST_LOST, 1 .. 10000 */
 
     /* Threads that share a step's work, the caller's own among them, 1 .. AST_MAX_THREADS; 1 alone in a build without threads
      * (AST_NO_THREADS, AST_NO_HEAP). The results are the same bits for every number. */
@@ -258,9 +257,9 @@ AST_API AST_CHECKED int ast_grey_from_rgb565(uint8_t *dst, int32_t dst_stride, c
 typedef struct ast_tracker ast_tracker; /* opaque; lives inside the block given to ast_init */
 
 /* Bytes that ast_init needs for this configuration, whatever the block's alignment; a function of the configuration (and the
- * build) alone, never of a frame. 0 when the configuration is not valid. */
+ * build) alone, never of a frame. 0 when the configuration is not valid. AST_MEM_SIZE, at the end of this header, is an upper bound of
+ * it for an array's length. */
 AST_API size_t ast_mem_size(const ast_config *cfg);
-/* AST_MEM_SIZE, at the end of this header, is an upper bound of it for an array's length. */
 
 /* Builds a tracker in mem (mem_size bytes, any address, the caller's to keep until ast_free and to release afterwards), or, with
  * mem == NULL, in one allocation of its own that ast_free releases. *cfg is copied. On an error *out is untouched.

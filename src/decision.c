@@ -17,32 +17,39 @@ static int likelihoods(const struct ast_kernels *kernels, const float *distance,
     return used;
 }
 
-/* The least of a model's distances to the particles, and by how much their mean exceeds it. */
-static void summarise(const float *distance, int count, int models, int j, float *least, ast_real *contrast) {
+/* Of a model's distances to the particles. */
+struct summary {
+    float least;
+    ast_real contrast; /* by how much the mean exceeds it */
+};
+
+static struct summary summary_of(const float *distance, int count, int models, int j) {
+    struct summary summary = {distance[j], 0};
     ast_real mean = 0;
-    *least = distance[j];
     for (int i = 0; i < count; i++) {
         const float v = distance[(size_t)i * (size_t)models + (size_t)j];
-        if (v < *least) *least = v;
+        if (v < summary.least) summary.least = v;
         mean += (ast_real)v / (ast_real)count;
     }
-    *contrast = mean - (ast_real)*least;
+    summary.contrast = mean - (ast_real)summary.least;
+    return summary;
 }
 
 int ast_decide(const float *distance, int count, int models, const ast_config *cfg, float *weight) {
     const struct ast_kernels *kernels = ast_kernels();
     ast_real likelihood[BLOCK];
     for (int i = 0; i < count; i++) weight[i] = 0.0f;
-    float least;
-    ast_real contrast, votes = 0; /* all that the models have to say */
+    struct summary of_model[AST_MAX_BAG];
+    ast_real votes = 0; /* all that the models have to say */
     for (int j = 0; j < models; j++) {
-        summarise(distance, count, models, j, &least, &contrast);
-        votes += contrast;
+        of_model[j] = summary_of(distance, count, models, j);
+        votes += of_model[j].contrast;
     }
     const int equal = cfg->vote == AST_VOTE_EQUAL || !(votes > (ast_real)FLT_MIN);
     if (equal) votes = (ast_real)models;
     for (int j = 0; j < models; j++) {
-        summarise(distance, count, models, j, &least, &contrast);
+        const float least = of_model[j].least;
+        const ast_real contrast = of_model[j].contrast;
         ast_real scale = (ast_real)cfg->sigma;
         if (cfg->likelihood == AST_LIKELIHOOD_SCALED) scale *= contrast;
         const ast_real rate = scale > (ast_real)FLT_MIN ? 1 / scale : 0; /* all particles alike: all likelihoods too */

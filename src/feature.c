@@ -2,7 +2,8 @@
 
 /* A part of the vector. A new feature is a new file and a row below. */
 struct part {
-    int (*length)(const ast_config *cfg);                                                   /* 0: not in this configuration */
+    /* 0: not in this configuration */
+    int (*length)(const ast_config *cfg);
     void (*layout)(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena); /* NULL: nothing, as the next two */
     void (*scratch_layout)(struct ast_features_scratch *own, const ast_config *cfg, struct ast_arena *arena);
     void (*prepare)(struct ast_features *f, const ast_frame *image, float object_width, float object_height);

@@ -220,7 +220,7 @@ static void cells(const struct ast_gradient *g, const ast_box *window, float *re
 #if AST_HAS_VECTORS
     ast_real sum[SQUARES];
     memcpy(sum, squares, sizeof sum);
-    const float norm = (float)ast_sqrt(((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7])));
+    const float norm = (float)ast_sqrt(total_of_eight(sum));
 #else
     const float norm = (float)ast_sqrt(dot(out, out, length));
 #endif

@@ -13,7 +13,7 @@
 #define EARLY_FRAMES 3.0f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
-/* But an object whose likeness to the start is usually at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
+/* But an object whose likeness to the start is lastingly at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
  * what is known, something is in front of it, however sure the cloud is about that. */
 #define FAITHFUL 0.5f
 #define VANISHED 0.35f

@@ -36,10 +36,10 @@ float ast_guard_likeness(const float *vector, const float *other, const float *o
 /* A winner's vector beside the start's (anchor) and the models' means, all about the origin. */
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
-/* A frame whose winner resembles so and whose cloud has this spread (object sizes). It is not trusted when its
- * likeness to the start falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud
- * is undecided or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire
- * of the lasting and cfg->recall of the usual. */
+/* A frame whose winner resembles so and whose cloud has this spread (object sizes). It is not trusted when its likeness to the start
+ * falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud is undecided or nothing
+ * like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire of the lasting and
+ * cfg->recall of the usual. */
 void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                    const struct ast_resemblance *resemblance, float spread);
 /* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual, and with a

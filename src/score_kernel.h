@@ -25,7 +25,7 @@ AST_ALWAYS_INLINE void depart_together(int count, float *x, size_t ld, const flo
             *at -= origin[e];
             s[0] += (ast_real)*at * (ast_real)*at;
         }
-        square[i] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+        square[i] = total_of_eight(s);
     }
 }
 
@@ -64,7 +64,7 @@ static ast_real depart_one(float *restrict x, const float *restrict origin, int 
         x[d] -= origin[d];
         sum[0] += (ast_real)x[d] * (ast_real)x[d];
     }
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+    return total_of_eight(sum);
 }
 
 static void depart(float *x, size_t ld, int count, const float *origin, int n, ast_real *square) {
