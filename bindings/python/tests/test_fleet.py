@@ -1,5 +1,6 @@
 """Many sequences over a Dask cluster of two worker processes, one of which is killed."""
 
+import logging
 import os
 import re
 import shutil
@@ -18,6 +19,7 @@ import pytest
 from distributed import Client, LocalCluster
 from pyarrow import parquet  # type: ignore[import-untyped]
 
+from asttrack.fleet import connected
 from asttrack.scene import Scene
 from terminal import all_shown, open_terminal, shown_until
 
@@ -168,6 +170,21 @@ def test_no_scheduler_and_no_sequence_are_one_line(sequences: Path, tmp_path: Pa
     assert bad.returncode == 1
     assert bad.stderr.startswith("asttrack: nonsense://127.0.0.1:1: no Dask scheduler answers: ")
     assert len(bad.stderr.splitlines()) == 1
+
+
+def test_a_connection_leaves_the_loggers_of_the_process_alone(client: Client) -> None:
+    def levels() -> dict[str, int]:
+        known = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in ("distributed", "tornado", "asyncio")]
+        return {name: logging.getLogger(name).level for name in known}
+
+    def changed(since: dict[str, int]) -> dict[str, int]:
+        return {name: level for name, level in levels().items() if since.get(name, level) != level}
+
+    before = levels()
+    assert {"distributed", "distributed.client", "asyncio"} <= set(before)
+    with connected(client.scheduler_info()["address"], 1):
+        assert changed(before) == {}
+    assert changed(before) == {}
 
 
 @pytest.mark.parametrize("own", [False, True])

@@ -36,9 +36,6 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
     Raises:
         DataError: there is no scheduler at the address.
     """
-    # What a client's own thread has to say of connections that end, an interrupt's among them, is no part of ours.
-    for speaker in ("distributed", "distributed.client", "tornado.application", "asyncio"):
-        logging.getLogger(speaker).setLevel(logging.CRITICAL)
     if scheduler is not None:
         try:
             client = Client(scheduler, timeout=CONNECT_SECONDS)  # type: ignore[no-untyped-call]

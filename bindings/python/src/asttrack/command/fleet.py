@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import logging
 from functools import partial
 from pathlib import Path
 
@@ -43,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     from asttrack.progress import shown
 
     quiet()
+    _silence_connections()
     for target in filter(None, (arguments.out, arguments.tracks)):
         if target.suffix not in FORMATS:
             raise UsageError(f"{target}: the name of a table must end in {' or '.join(FORMATS)}")
@@ -68,3 +70,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.tracks is not None:
         write_tracks(arguments.tracks, results)
     return INTERRUPTED if interrupted else int(bool(failures))
+
+
+def _silence_connections() -> None:
+    """Leaves what clients' threads say of connections that end, an interrupt's among them, out of this command's own output.
+
+    They go on after the client is closed, until the process ends, so there is no time to let them speak again. That is the
+    command's to decide, whose process it is, not the library's. Importing `distributed` sets levels of its own: call this after.
+    """
+    for speaker in ("distributed", "distributed.client", "tornado.application", "asyncio"):
+        logging.getLogger(speaker).setLevel(logging.CRITICAL)
