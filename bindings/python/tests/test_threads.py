@@ -56,8 +56,12 @@ def test_python_goes_on_during_a_step() -> None:
     assert most > 10
 
 
-def test_two_trackers_are_inside_the_library_at_once() -> None:
-    """Each waits there for the other, and would for ever behind a shared lock; that a call lets Python go on is shown above."""
+def test_no_lock_around_a_step_is_shared_by_two_trackers() -> None:
+    """Each, with whatever `update` holds during its step, waits before and after it for the other: for ever, behind a shared lock.
+
+    Whether the two calls themselves overlap is not seen here: that a call lets Python go on is shown above, and that the library
+    has no lock of its own follows from its having no writable data (`make size`).
+    """
     trackers = slow_tracker(), slow_tracker()
     both = threading.Barrier(len(trackers), timeout=300)
 
