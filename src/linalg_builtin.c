@@ -3,6 +3,7 @@
 #include "linalg.h"
 
 #include "product.h"
+#include "total.h"
 
 static int prepare(void) {
     return 0;
@@ -14,13 +15,13 @@ static int product(int rows, int cols, int depth, const float *a, int lda, const
 }
 
 static ast_real dot(const ast_real *x, const ast_real *y, int n) {
-    enum { LANES = 8 };
-    ast_real sum[LANES] = {0};
+    enum { SUMS = 8 };
+    ast_real sum[SUMS] = {0};
     int d = 0;
-    for (; d + LANES <= n; d += LANES)
-        for (int l = 0; l < LANES; l++) sum[l] += x[d + l] * y[d + l];
+    for (; d + SUMS <= n; d += SUMS)
+        for (int s = 0; s < SUMS; s++) sum[s] += x[d + s] * y[d + s];
     for (; d < n; d++) sum[0] += x[d] * y[d];
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+    return total_of_eight(sum);
 }
 
 static int product_real(int rows, int cols, int depth, const ast_real *a, int lda, const ast_real *b, int ldb, ast_real *c,

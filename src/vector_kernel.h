@@ -1,10 +1,5 @@
 /* Inner products of vectors, in eight independent sums that a compiler can hold side by side without reordering any of them. */
-#include "real.h"
-
-/* Their total, in the one order that every sum of eight has. */
-static inline ast_real total_of_eight(const ast_real *sum) {
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
-}
+#include "total.h"
 
 static ast_real dot(const float *x, const float *y, int n) {
     enum { SUMS = 8 };
