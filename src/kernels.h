@@ -9,20 +9,8 @@
 #include <stddef.h>
 
 #include "asttrack.h"
+#include "build.h"
 #include "real.h"
-
-/* Vectors that are worked on side by side; the element l of each is in lane l. A processor without vectors gains nothing from many, and
- * saves memory and stack with few (4, 8 or 16); the number changes no bit of a result. */
-#ifndef AST_LANES
-#ifdef ARDUINO /* where a library gives no flags */
-#define AST_LANES 4
-#else
-#define AST_LANES 16
-#endif
-#endif
-#if AST_LANES != 4 && AST_LANES != 8 && AST_LANES != 16
-#error "AST_LANES: say 4, 8 or 16"
-#endif
 
 /* Whether this build has the x86 versions: they need nothing from the build but a compiler that can aim single files. Build with
  * AST_ONE_KERNEL to leave them out. */

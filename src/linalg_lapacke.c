@@ -1,7 +1,9 @@
 /* Linear algebra by OpenBLAS and LAPACKE. Only *_work calls, column-major: the high-level and the row-major ones allocate. */
 #include "linalg.h"
 
-#ifndef ARDUINO /* whose builder takes every file of src/ */
+#include "build.h"
+
+#ifndef AST_NO_LAPACKE
 #include <cblas.h>
 #include <lapacke.h>
 

@@ -7,16 +7,10 @@
 
 #include <float.h>
 
+#include "build.h"
 #include "dialect.h"
 #include "maths.h"
 
-#ifndef AST_REAL
-#ifdef ARDUINO /* where a library gives no flags */
-#define AST_REAL float
-#else
-#define AST_REAL double
-#endif
-#endif
 typedef AST_REAL ast_real;
 
 /* 1 or 0, for the preprocessor: a float build compiles no double function. */

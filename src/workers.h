@@ -3,11 +3,7 @@
 #define AST_WORKERS_H
 
 #include "arena.h"
-
-/* A build without a heap has no threads either: making one takes memory from it. */
-#if (defined(AST_NO_HEAP) || defined(ARDUINO)) && !defined(AST_NO_THREADS)
-#define AST_NO_THREADS
-#endif
+#include "build.h"
 
 /* Work in parts 0 .. parts - 1. A part is done by worker number 0 .. count - 1, where parts that are done at the same time have different
  * workers; 0, or a failure. */
