@@ -91,6 +91,12 @@ void option_print(const option *table) {
     printf("  %-26s %s\n", "--help", "this text");
 }
 
+/* Which strtod reads, and neither the Python package nor whoever writes numbers for people. */
+static bool is_hexadecimal(const char *text) {
+    text += *text == '+' || *text == '-';
+    return text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+}
+
 bool option_parse_integer(const char **text, long *value) {
     char *end;
     if (isspace((unsigned char)**text)) return false;
@@ -104,7 +110,7 @@ bool option_parse_integer(const char **text, long *value) {
 
 bool option_parse_real(const char **text, double *value) {
     char *end;
-    if (isspace((unsigned char)**text)) return false;
+    if (isspace((unsigned char)**text) || is_hexadecimal(*text)) return false;
     const double number = strtod(*text, &end);
     if (end == *text || !(fabs(number) <= (double)FLT_MAX)) return false;
     *text = end;

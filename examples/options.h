@@ -46,8 +46,8 @@ bool option_seed(const char *name, const char *text, uint64_t *value); /* decima
 bool option_box(const char *name, const char *text, ast_box *box);     /* x,y,w,h */
 bool option_size(const char *name, const char *text, int32_t minimum, int32_t maximum, int32_t *width, int32_t *height); /* WxH */
 
-/* The parsers underneath, silent: the number at the start of *text, which moves past it. False where there is none, or none that a
- * long or a finite float can hold. No leading white space is taken. */
+/* The parsers underneath, silent: the decimal number at the start of *text, which moves past it. False where there is none, or none
+ * that a long or a finite float can hold. No leading white space is taken. */
 bool option_parse_integer(const char **text, long *value);
 bool option_parse_real(const char **text, double *value);
 

@@ -383,12 +383,14 @@ static void test_bad_usage(void) {
         {"--box 1,2,3", "track @small --box 1,2,3"},
         {"--box 1,2,3,x", "track @small --box 1,2,3,x"},
         {"--box nan,2,3,4", "track @small --box nan,2,3,4"},
+        {"--box 8,-0X8,8,8", "track @small --box 8,-0X8,8,8"},
         {"--preset fast", "track @small --preset fast"},
         {"--set particles", "track @small --set particles"},
         {"--set speed=3", "track @small --set speed=3"},
         {"particles", "track @small --set particles=0"},
         {"particles", "track @small --set particles=12.5"},
         {"sigma", "track @small --set sigma=nan"},
+        {"sigma", "track @small --set sigma=0x1p-3"},
         {"basis", "track @small --set basis=tilted"},
         {"centred, raw", "track @small --set basis=tilted"},
         {"basis_size", "track @small --preset paper --set history=1"},
@@ -420,6 +422,7 @@ static void test_bad_data(void) {
         {"@notpicture/1.pgm: ", "track @notpicture --box 1,1,8,8"},
         {"@badtruth/groundtruth.txt:1: ", "track @badtruth"},
         {"@nantruth/groundtruth.txt:1: ", "track @nantruth"},
+        {"@hextruth/groundtruth.txt:2: not four numbers", "track @hextruth"},
         {"@twins: ", "track @twins --box 1,1,8,8"},
         {"@small/img/00001.pgm: ", "track @small --box 500,500,10,10"},
         {"@small/img/00001.pgm: ", "track @small --box 10,10,0.5,10"},
@@ -537,14 +540,16 @@ static void make_inputs(void) {
     damage("cut", 1);
     damage("holes", 5);
     damage("holes", 9);
-    static const char *const directories[] = {"@empty", "@bare", "@notpicture", "@badtruth", "@nantruth", "@twins"};
+    static const char *const directories[] = {"@empty", "@bare", "@notpicture", "@badtruth", "@nantruth", "@hextruth", "@twins"};
     for (size_t i = 0; i < sizeof directories / sizeof directories[0]; i++) make_directory(at(directories[i]));
     const size_t size = read_file(at("@small/img/00001.pgm"), picture, sizeof picture);
-    static const char *const pictures[] = {"@bare/1.pgm", "@badtruth/1.pgm", "@nantruth/1.pgm", "@twins/1.pgm", "@twins/01.pgm"};
+    static const char *const pictures[] = {"@bare/1.pgm",     "@badtruth/1.pgm", "@nantruth/1.pgm",
+                                           "@hextruth/1.pgm", "@twins/1.pgm",    "@twins/01.pgm"};
     for (size_t i = 0; i < sizeof pictures / sizeof pictures[0]; i++) write_file(at(pictures[i]), picture, size);
     write_text(at("@notpicture/1.pgm"), "this is no picture\n");
     write_text(at("@badtruth/groundtruth.txt"), "10,10,twenty,20\n");
     write_text(at("@nantruth/groundtruth.txt"), "nan,nan,nan,nan\n");
+    write_text(at("@hextruth/groundtruth.txt"), "10,10,20,20\n0x10,10,20,20\n");
     write_text(at("@plain"), "a file\n");
 }
 

@@ -46,6 +46,8 @@ def test_frames_without_a_box_are_nan(tmp_path: Path, absent: str) -> None:
         (f"{BOX}\n1,2,3,4,5\n", "groundtruth.txt:2: not four numbers x,y,w,h"),
         (f"{BOX}\nbox\n", "groundtruth.txt:2: not four numbers"),
         (f"{BOX}\n1,inf,3,4\n", "groundtruth.txt:2: not four numbers"),
+        (f"{BOX}\n0x10,2,3,4\n", "groundtruth.txt:2: not four numbers"),
+        (f"{BOX}\n1_0,2,3,4\n", "groundtruth.txt:2: not four numbers"),
         (f"{BOX}\n\n{BOX}\n", "groundtruth.txt:2: not four numbers"),
         (f"{BOX}\n1,nan,3,4\n", "groundtruth.txt:2: nan in part of a box"),
         (f"{BOX}\n1,2,0,4\n", "groundtruth.txt:2: a box without area"),

@@ -185,7 +185,7 @@ def _number(path: Path) -> re.Match[str] | None:
 def _parse_box(line: str, place: str) -> list[float]:
     words = re.split(r"[,\s]+", line.strip().strip(","))
     try:
-        box = [float(word) for word in words]
+        box = [] if "_" in line else [float(word) for word in words]  # Python's own 1_000 is nobody else's
     except ValueError:
         box = []
     if len(box) != 4 or any(map(math.isinf, box)):
