@@ -261,8 +261,8 @@ test_failed := $(BUILDDIR)/tests/failed
 comma := ,
 lapacke_skipped := C tests with lapacke: 0 passed, 0 failed, 1 skipped (no libopenblas-dev and liblapacke-dev)
 
-# One C run for each backend that the machine can build, each in a build directory of its own, and the Python tests with one of them; a
-# failing run does not stop the others, which -j runs at the same time.
+# One C run for each backend that the machine can build, each in a build directory of its own, and the Python tests with one of
+# them; a failing run does not stop the others, which -j runs at the same time.
 .PHONY: test-start test-ready $(test_runs) $(test_backends:%=test-build-%)
 test: $(test_runs) ## all tests: C with each backend, then Python
 	@scripts/total_tests.sh $(BUILDDIR)/test-summary $(test_summaries); [ ! -e $(test_failed) ]
@@ -360,8 +360,8 @@ fuzz: ## fuzz every harness for its share of MINUTES, with clang under the addre
 	    SANITIZE=fuzzer-no-link$(comma)address$(comma)undefined$(comma)float-cast-overflow fuzz-programs
 	@scripts/fuzz.sh $(MINUTES) $(BUILDDIR)/found $(fuzz_sources:tests/fuzz/%.c=$(BUILDDIR)/clang-fuzz/fuzz/%)
 
-# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python. OpenBLAS's own threads, which it never uses
-# here, would take memory in their own time.
+# One tracker for FRAMES frames, and two hundred that come and go; in C, then through Python. OpenBLAS's own threads, which it never
+# uses here, would take memory in their own time.
 .PHONY: soak
 $(BUILDDIR)/soak: $(BUILDDIR)/obj/soak/soak.o $(BUILDDIR)/obj/tests/support_render.o $(BUILDDIR)/obj/tests/support_noise.o \
 		$(static_lib) $(BUILDDIR)/sources
@@ -385,16 +385,16 @@ ubsan: ## the C tests under the undefined-behaviour sanitizer
 # OpenBLAS is not compiled for it and would be reported.
 tsan: ## the C tests under the thread sanitizer, with the builtin backend
 	+@$(MAKE) --no-print-directory LAPACKE=no JPEG=$(JPEG) BACKEND=builtin SANITIZE=thread sanitize
-# Where size_t has 32 bits, as on most targets: the 32-bit x86 of the same machine, whose programs it runs. The arithmetic is that of
-# other targets, not the old one of x86 that rounds as registers spill.
+# Where size_t has 32 bits, as on most targets: the 32-bit x86 of the same machine, whose programs it runs. The arithmetic is that
+# of other targets, not the old one of x86 that rounds as registers spill.
 X86_32 ?= i686-linux-gnu
 test-32: unity ## the C tests with 32-bit addresses, by a cross-compiler of X86_32
 	+@$(MAKE) --no-print-directory CC=$(X86_32)-gcc LAPACKE=no JPEG=no BACKEND=builtin BUILDDIR=$(BUILDDIR)/32-bit \
 	    CFLAGS='-O2 -msse2 -mfpmath=sse' \
 	    LDFLAGS='-Wl,--dynamic-linker=/usr/$(X86_32)/lib/ld-linux.so.2 -Wl,-rpath,/usr/$(X86_32)/lib' test-c
 
-# Single precision throughout, as in firmware: what tests allow then is in tests/support_precision.h. Those of the command and of the
-# bench compute nothing of their own.
+# Single precision throughout, as in firmware: what tests allow then is in tests/support_precision.h. Those of the command and of
+# the bench compute nothing of their own.
 .PHONY: test-single
 single_tests := $(filter-out test_command% test_bench%,$(test_sources:tests/%.c=%))
 test-single: unity ## the C tests with ast_real float, as in firmware
@@ -465,8 +465,8 @@ lint: ## static analysis of the C sources
 	    -D_POSIX_C_SOURCE=200809L $(if $(filter yes,$(JPEG)),-DAST_WITH_JPEG) 2>/dev/null' && echo "lint: nothing found"
 
 # What reads the code rather than runs it, beside lint. gcc's analyser takes a vector's elements for bits where it is shifted: that
-# warning is left to cppcheck and to gcc's own -Wshift-count-overflow. cppcheck: each finding is an error; the functions of the API have
-# no caller here.
+# warning is left to cppcheck and to gcc's own -Wshift-count-overflow. cppcheck: each finding is an error; the functions of the API
+# have no caller here.
 analyse: ## static analysis by gcc -fanalyzer and cppcheck
 	@$(CPPCHECK) --version >/dev/null || { echo "no $(CPPCHECK): on Debian, apt-get install cppcheck" >&2; exit 1; }
 	$(CPPCHECK) --quiet --std=c99 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -Iinclude -Isrc \
@@ -475,9 +475,10 @@ analyse: ## static analysis by gcc -fanalyzer and cppcheck
 	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/analyse CC=gcc WERROR=1 LAPACKE=$(LAPACKE) \
 	    CFLAGS='-O1 -fanalyzer -Wno-analyzer-shift-count-overflow' JPEG=$(JPEG) BACKEND=$(BACKEND) lib-static examples >/dev/null && echo "gcc -fanalyzer: nothing found"
 
-# A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so that
-# valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long. valgrind does not know every
-# instruction of this very processor, for which the peaks of the bench are built; a test's own malloc, which counts, is to be called.
+# A wild read, an uninitialised value and a leak are errors; a tracker's own block is known by the aligned address inside it, so
+# that valgrind calls it possibly lost, which is none. TESTS= names some programs: all of them take long. valgrind does not know
+# every instruction of this very processor, for which the peaks of the bench are built; a test's own malloc, which counts, is to be
+# called.
 valgrind := valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite \
 	--soname-synonyms=somalloc=nouserintercepts
 memcheck: unity ## the C tests under valgrind, with the builtin backend

@@ -1,5 +1,5 @@
-/* What every measurement of a run shares, and the measurements: each prints its table, writes its part of the file, and returns false
- * after reporting why it could not. */
+/* What every measurement of a run shares, and the measurements: each prints its table, writes its part of the file, and returns
+ * false after reporting why it could not. */
 #ifndef BENCH_H
 #define BENCH_H
 

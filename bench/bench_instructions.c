@@ -1,5 +1,5 @@
-/* Instructions of a step, counted by callgrind: they repeat to the last digit where times do not. The processor that valgrind shows to
- * a program has AVX2 at most: where a library chooses its kernels by the processor, those are the ones counted. */
+/* Instructions of a step, counted by callgrind: they repeat to the last digit where times do not. The processor that valgrind shows
+ * to a program has AVX2 at most: where a library chooses its kernels by the processor, those are the ones counted. */
 #include "bench.h"
 
 #include "callgrind.h"

@@ -1,11 +1,12 @@
-/* The roofline of a step: what the machine does at its best with the two things that a step cannot do without, the candidates' samples
- * and their product with the columns of the bag.
+/* The roofline of a step: what the machine does at its best with the two things that a step cannot do without, the candidates'
+ * samples and their product with the columns of the bag.
  *
  *     least time = operations of the products / measured peak of such products + N x measured peak time of a patch
  *
  * The peaks are the best of this run: of both backends, in the shapes that a step has; of a sampler stripped of all but the samples
- * (peak_patch.h) or the library's own, whichever is faster. Everything else that a step does, such as moving the cloud, the view and
- * its gradients, eigen-problems, distances and decision, counts as avoidable; the two parts share one core's units, so they add up. */
+ * (peak_patch.h) or the library's own, whichever is faster. Everything else that a step does, such as moving the cloud, the view
+ * and its gradients, eigen-problems, distances and decision, counts as avoidable; the two parts share one core's units, so they add
+ * up. */
 #include "bench.h"
 
 #include "clock.h"
@@ -109,7 +110,8 @@ struct samples {
     bool cells;
 };
 
-/* Seconds of a patch, the best of rounds and samplers. The window stands in the middle and wanders whole pixels around it, as candidates do. */
+/* Seconds of a patch, the best of rounds and samplers. The window stands in the middle and wanders whole pixels around it, as
+ * candidates do. */
 static double patch_peak(const struct bench *b, const struct samples *s) {
     enum { WANDER = 4, ROOM = PEAK_SIDE * PEAK_SIDE * PEAK_DIRECTIONS };
     float *line = malloc(PEAK_LINE * sizeof *line), *out = malloc(ROOM * sizeof *out);

@@ -7,8 +7,8 @@
 
 /* Writes the contender's tracker and the next 1 + steps frames. False after reporting why. */
 bool counting_write(const struct contender *c, const char *path, int steps);
-/* Reads such a file and takes the steps: the first one as it comes, for whatever the tracker keeps between frames, the others inside
- * the function counted_step, which is what callgrind counts. False after reporting why. */
+/* Reads such a file and takes the steps: the first one as it comes, for whatever the tracker keeps between frames, the others
+ * inside the function counted_step, which is what callgrind counts. False after reporting why. */
 bool counting_replay(const char *path);
 
 #endif

@@ -1,5 +1,5 @@
-/* The least that sampling candidates can cost: the samples alone, at coordinates and weights that lie ready in tables, with no window
- * to aim at, no border to mind and nothing to normalise. */
+/* The least that sampling candidates can cost: the samples alone, at coordinates and weights that lie ready in tables, with no
+ * window to aim at, no border to mind and nothing to normalise. */
 #ifndef PEAK_PATCH_H
 #define PEAK_PATCH_H
 

@@ -1,7 +1,7 @@
-/* Where a step's time goes, without a line in the library for it: the tracker's two tables of functions (the scoring's and the linear
- * algebra's) are replaced by copies whose entries read the clock and call the real ones. What lies between those calls is the rest of
- * the step: before the first of them the cloud and the view, between tiles the candidates' features, after the last one the decision.
- * What reading the clock takes, some four times a tile, is subtracted. One thread only. */
+/* Where a step's time goes, without a line in the library for it: the tracker's two tables of functions (the scoring's and the
+ * linear algebra's) are replaced by copies whose entries read the clock and call the real ones. What lies between those calls is
+ * the rest of the step: before the first of them the cloud and the view, between tiles the candidates' features, after the last one
+ * the decision. What reading the clock takes, some four times a tile, is subtracted. One thread only. */
 #ifndef STAGES_H
 #define STAGES_H
 

@@ -1,5 +1,6 @@
 /* What the confidence is made from, watched: linked in front of the command (--wrap), it writes the predictors of every step's
- * probability, and the probability itself, as a row of the file AST_PREDICTORS. calibration/fit.py reads the names in its heading. */
+ * probability, and the probability itself, as a row of the file AST_PREDICTORS. calibration/fit.py reads the names in its
+ * heading. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -51,8 +51,9 @@ static int run(int argc, char **argv) {
     return EXIT_USAGE;
 }
 
-/* Takes the place of a standard stream that the caller closed, so that no file becomes that stream by being opened next. Each is open
- * the wrong way round: to use it is still an error. Nothing is open here but the streams, so the least number free is the right one. */
+/* Takes the place of a standard stream that the caller closed, so that no file becomes that stream by being opened next. Each is
+ * open the wrong way round: to use it is still an error. Nothing is open here but the streams, so the least number free is the
+ * right one. */
 static void occupy_standard_streams(void) {
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
         if (fcntl(descriptor, F_GETFD) >= 0) continue;

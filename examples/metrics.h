@@ -1,5 +1,6 @@
-/* How well a track fits the ground truth: the three figures of the tracking literature. Frames without truth are not counted, nor are
- * those whose box is given: they would say nothing of the tracker, and published figures are without them (docs/evaluation.md). */
+/* How well a track fits the ground truth: the three figures of the tracking literature. Frames without truth are not counted, nor
+ * are those whose box is given: they would say nothing of the tracker, and published figures are without them
+ * (docs/evaluation.md). */
 #ifndef METRICS_H
 #define METRICS_H
 

@@ -33,8 +33,8 @@ void option_start(option_reader *reader, int argc, char **argv, const option *ta
 /* The next option's id with *value its value (NULL for a flag), OPTION_POSITIONAL with *value the argument, or another of the
  * above. --help and -h need no row in the table. */
 int option_next(option_reader *reader, const char **value);
-/* Reads all arguments and hands each to take with `to`: the option's id or OPTION_POSITIONAL, and the value. take returns false after
- * reporting what is wrong. OPTION_END when all is read; OPTION_HELP or OPTION_ERROR otherwise. */
+/* Reads all arguments and hands each to take with `to`: the option's id or OPTION_POSITIONAL, and the value. take returns false
+ * after reporting what is wrong. OPTION_END when all is read; OPTION_HELP or OPTION_ERROR otherwise. */
 typedef bool option_take(void *to, int id, const char *value);
 int option_read(int argc, char **argv, const option *table, option_take *take, void *to);
 /* The table as help text, on stdout. */

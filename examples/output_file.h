@@ -27,8 +27,8 @@ typedef struct output_file {
 
 /* Makes the temporary file at once: what cannot be written shows before the work is done. */
 bool output_open(output_file *output, const char *path);
-/* Print, without a look at errors: output_commit reports them. A stream in memory notes no failure, so that who prints to it otherwise
- * must. */
+/* Print, without a look at errors: output_commit reports them. A stream in memory notes no failure, so that who prints to it
+ * otherwise must. */
 void output_print(output_file *output, const char *format, ...) OUTPUT_FORMAT;
 void output_bytes(output_file *output, const void *bytes, size_t size);
 /* Writes the bytes and puts the file in its place; true only when every one has been written. Ends output either way. */

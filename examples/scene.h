@@ -1,6 +1,7 @@
 /* A rendered sequence with known truth: one textured target before a textured, slowly panning background. It drifts and darts,
  * grows and shrinks, is hidden by two boards that pass (one in part, one fully), goes through a change of light and meets a
- * look-alike (unless it is alone); the camera has noise. Every frame is a pure function of the options, so frames can be rendered in any order. */
+ * look-alike (unless it is alone); the camera has noise. Every frame is a pure function of the options, so frames can be rendered
+ * in any order. */
 #ifndef SCENE_H
 #define SCENE_H
 

@@ -18,8 +18,8 @@
  *  - A call that fails leaves the tracker as it was; only the distances of ast_get_particles are gone after a failed step.
  *  - After ast_init nothing allocates memory, in any linear-algebra backend.
  *  - There is no global mutable state: different trackers may be used in different threads at once; one tracker may not.
- *  - With cfg.threads > 1 ast_init starts threads, which sleep between steps, take no signals, and end in ast_free. They do not live on
- *    in a child of fork: there, such a tracker must not be used, nor freed.
+ *  - With cfg.threads > 1 ast_init starts threads, which sleep between steps, take no signals, and end in ast_free. They do not
+ *    live on in a child of fork: there, such a tracker must not be used, nor freed.
  *  - Pixel centres lie at integer coordinates: a box covers x - 1/2 .. x + w - 1/2.
  */
 #ifndef ASTTRACK_H
@@ -188,8 +188,8 @@ typedef struct ast_config {
     int32_t vote;       /* AST_VOTE_* */
     int32_t scoring;    /* AST_SCORING_* */
 
-    /* Guard: what the tracker learns from, and what it does when the object is gone. Likenesses are relative to what they were: recall's
-     * and selective's to a mean of about the last 20 frames, guard's and reacquire's to one that is slower to fall. */
+    /* Guard: what the tracker learns from, and what it does when the object is gone. Likenesses are relative to what they were:
+     * recall's and selective's to a mean of about the last 20 frames, guard's and reacquire's to one that is slower to fall. */
     float guard;  /* least likeness to the start of a frame that is learned from, 0 .. 1; 0: no guard, and none of the next three */
     float recall; /* the same of the likeness to the bag's likest model; a frame is refused when both fall short, 0 .. 1 */
     float reacquire; /* least likeness to the start that ends AST_LOST, beside recall's, 0 .. 1 */
@@ -257,15 +257,16 @@ AST_API AST_CHECKED int ast_grey_from_rgb565(uint8_t *dst, int32_t dst_stride, c
 typedef struct ast_tracker ast_tracker; /* opaque; lives inside the block given to ast_init */
 
 /* Bytes that ast_init needs for this configuration, whatever the block's alignment; a function of the configuration (and the
- * build) alone, never of a frame. 0 when the configuration is not valid. AST_MEM_SIZE, at the end of this header, is an upper bound of
- * it for an array's length. */
+ * build) alone, never of a frame. 0 when the configuration is not valid. AST_MEM_SIZE, at the end of this header, is an upper bound
+ * of it for an array's length. */
 AST_API size_t ast_mem_size(const ast_config *cfg);
 
 /* Builds a tracker in mem (mem_size bytes, any address, the caller's to keep until ast_free and to release afterwards), or, with
  * mem == NULL, in one allocation of its own that ast_free releases. *cfg is copied. On an error *out is untouched.
  * AST_E_NULL, AST_E_CONFIG, AST_E_STRUCT_SIZE, AST_E_ARENA, AST_E_OUT_OF_MEMORY, AST_E_NO_HEAP, AST_E_THREAD. */
 AST_API AST_CHECKED int ast_init(ast_tracker **out, const ast_config *cfg, void *mem, size_t mem_size);
-/* Ends a tracker and its threads: before its block is released or used otherwise. NULL is accepted; a caller's block is never freed. */
+/* Ends a tracker and its threads: before its block is released or used otherwise. NULL is accepted; a caller's block is never
+ * freed. */
 AST_API void ast_free(ast_tracker *t);
 
 /* Starts (or re-targets) on the object inside box. All earlier state is forgotten; the random generator restarts from the seed.
@@ -323,9 +324,9 @@ typedef struct ast_subspace {
 AST_API int ast_bag_count(const ast_tracker *t);
 /* Model index of the bag, 0 = oldest. AST_E_NULL, AST_E_NOT_STARTED, AST_E_RANGE. */
 AST_API AST_CHECKED int ast_get_model(const ast_tracker *t, int32_t index, ast_subspace *out);
-/* Floats in a feature vector of this configuration (D): the grey patch's patch_height x patch_width, row-major and normalised, times
- * patch_weight, then gradient_cells x gradient_cells x 8 directions, times gradient_weight; a part with weight 0 is not there. 0 when
- * the configuration is not valid. */
+/* Floats in a feature vector of this configuration (D): the grey patch's patch_height x patch_width, row-major and normalised,
+ * times patch_weight, then gradient_cells x gradient_cells x 8 directions, times gradient_weight; a part with weight 0 is not
+ * there. 0 when the configuration is not valid. */
 AST_API int32_t ast_feature_length(const ast_config *cfg);
 /* Number of vectors in the history, 0 .. history; or a negative code. */
 AST_API int ast_history_count(const ast_tracker *t);
@@ -339,7 +340,8 @@ AST_API size_t ast_save_size(const ast_config *cfg);
 /* Writes the whole state into buffer: versioned, checksummed, little-endian on every machine, so that a restored tracker continues
  * bit for bit. AST_E_NULL, AST_E_NOT_STARTED, AST_E_BUFFER. */
 AST_API AST_CHECKED int ast_save(const ast_tracker *t, void *buffer, size_t size);
-/* Replaces the state of t, which must have the configuration of the saved one (but for `scoring` and `threads`). AST_E_NULL, AST_E_CORRUPT, AST_E_MISMATCH. */
+/* Replaces the state of t, which must have the configuration of the saved one (but for `scoring` and `threads`). AST_E_NULL,
+ * AST_E_CORRUPT, AST_E_MISMATCH. */
 AST_API AST_CHECKED int ast_restore(ast_tracker *t, const void *buffer, size_t size);
 
 /* ---- The geometry on its own ---- */
@@ -350,8 +352,8 @@ AST_API size_t ast_subspace_work_size(int32_t dim, int32_t count);
 /* Fits an affine subspace to count images (paper section 2.2). images: dim x count, column-major, stride floats a column. mean
  * (dim floats) and basis (dim x n, column-major, packed) are the caller's; out then points into them. A direction whose singular
  * value is at most 1e-5 of the images' Frobenius norm is absent: a zero column. basis_kind: AST_BASIS_*; 1 <= n <= AST_MAX_BASIS.
- * work: any address, ast_subspace_work_size(dim, count) bytes. AST_E_NULL, AST_E_RANGE (values that are not finite, too), AST_E_BUFFER,
- * AST_E_BACKEND. */
+ * work: any address, ast_subspace_work_size(dim, count) bytes. AST_E_NULL, AST_E_RANGE (values that are not finite, too),
+ * AST_E_BUFFER, AST_E_BACKEND. */
 AST_API AST_CHECKED int ast_subspace_fit(const float *images, int32_t dim, int32_t stride, int32_t count, int basis_kind, int32_t n,
                                          float *mean, float *basis, ast_subspace *out, void *work, size_t work_size);
 
@@ -373,9 +375,9 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
  *
  *     static unsigned char block[AST_MEM_SIZE_TINY];
  *
- * is a tracker's block without a heap. patch_width and patch_height: 0 when patch_weight is 0; gradient_cells: 0 when gradient_weight
- * is 0. For the built-in linear algebra (LAPACK says only when it runs how much it needs) and AST_SCORING_GRAM. Compile with the
- * library's own AST_REAL and AST_LANES, if it was built with any. */
+ * is a tracker's block without a heap. patch_width and patch_height: 0 when patch_weight is 0; gradient_cells: 0 when
+ * gradient_weight is 0. For the built-in linear algebra (LAPACK says only when it runs how much it needs) and AST_SCORING_GRAM.
+ * Compile with the library's own AST_REAL and AST_LANES, if it was built with any. */
 #define AST_MEM_SIZE(particles, view, patch_width, patch_height, gradient_cells, history, basis_size, bag_size, background,        \
                      threads)                                                                                                      \
     AST_MEM_OF_((size_t)(particles), (size_t)(view), (size_t)(patch_width), (size_t)(patch_height), (size_t)(gradient_cells),      \

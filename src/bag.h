@@ -6,8 +6,8 @@
 #include "asttrack.h"
 #include "real.h"
 
-/* All vectors of the bag are columns of one matrix, so that one product compares a patch with every model: first `lead` columns that
- * belong to the scoring (scratch), then for each model its n basis vectors and its mean. */
+/* All vectors of the bag are columns of one matrix, so that one product compares a patch with every model: first `lead` columns
+ * that belong to the scoring (scratch), then for each model its n basis vectors and its mean. */
 struct ast_bag {
     float *columns;
     int dim, stride; /* floats in a column, floats from one to the next */

@@ -1,6 +1,6 @@
-/* What a build may choose by a flag, and what holds without one. Arduino's builder gives a library no flags, and compiles every file of
- * src/: the choices for its small processors are made here. The public header, which sketches include alone, knows the same of the
- * first two in AST_MEM_REAL_ and AST_MEM_LANES_. */
+/* What a build may choose by a flag, and what holds without one. Arduino's builder gives a library no flags, and compiles every
+ * file of src/: the choices for its small processors are made here. The public header, which sketches include alone, knows the same
+ * of the first two in AST_MEM_REAL_ and AST_MEM_LANES_. */
 #ifndef AST_BUILD_H
 #define AST_BUILD_H
 

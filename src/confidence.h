@@ -11,8 +11,8 @@ struct ast_confidence {
 };
 
 /* Likeness of the winning patch to the object as known: the mean of its normalised correlation with the first model (anchor, dim
- * floats) and with the model of the bag that is most like it, clipped to [0, 1]. The first model cannot drift, and the bag knows the
- * appearances since. */
+ * floats) and with the model of the bag that is most like it, clipped to [0, 1]. The first model cannot drift, and the bag knows
+ * the appearances since. */
 float ast_confidence_score(const float *patch, const float *anchor, const struct ast_bag *bag);
 /* What tells whether the winner is the object. */
 struct ast_evidence {

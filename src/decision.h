@@ -4,9 +4,9 @@
 
 #include "asttrack.h"
 
-/* distance: count x models, row-major; models <= AST_MAX_BAG. weight (count) receives p(A_i | bag) = sum over j of the configured likelihoods, each
- * normalised over the particles, times the model's vote (cfg->vote); the votes, and so the weights, sum to 1. Returns the argmax, the
- * lowest index on a tie. */
+/* distance: count x models, row-major; models <= AST_MAX_BAG. weight (count) receives p(A_i | bag) = sum over j of the configured
+ * likelihoods, each normalised over the particles, times the model's vote (cfg->vote); the votes, and so the weights, sum to 1.
+ * Returns the argmax, the lowest index on a tie. */
 int ast_decide(const float *distance, int count, int models, const ast_config *cfg, float *weight);
 
 #endif

@@ -88,10 +88,10 @@ static void eigen(int n, ast_real *a, ast_real *values, ast_real *vectors) {
         for (int j = i + 1; j < n; j++) order_lanes(n, values, vectors, i, j);
 }
 
-/* The eigenvalues of 3 x 3 matrices, descending, in closed form: with q the mean of the diagonal and A = q I + p B, those of B are 2 cos
- * of the thirds of acos(det(B) / 2) (Smith, Communications of the ACM 4, 1961). Not where they lie too close together for that: its error
- * grows with (q / p)^3, and with the root of what rounding leaves where two are equal. Returns the number of such lanes and marks them
- * with 1 in `close`, the others with 0. */
+/* The eigenvalues of 3 x 3 matrices, descending, in closed form: with q the mean of the diagonal and A = q I + p B, those of B are
+ * 2 cos of the thirds of acos(det(B) / 2) (Smith, Communications of the ACM 4, 1961). Not where they lie too close together for
+ * that: its error grows with (q / p)^3, and with the root of what rounding leaves where two are equal. Returns the number of such
+ * lanes and marks them with 1 in `close`, the others with 0. */
 static int eigenvalues_of_three(const ast_real *restrict a, ast_real *restrict values, ast_real *restrict close) {
     enum { n = 3 };
     const ast_real *a00 = a + AT(0, 0), *a11 = a + AT(1, 1), *a22 = a + AT(2, 2);

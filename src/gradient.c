@@ -7,8 +7,8 @@ void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct a
     g->weight = cfg->gradient_weight;
     g->side = cfg->view;
     g->maps = ast_arena_take(arena, side * side * AST_DIRECTIONS, sizeof *g->maps);
-    /* The energy takes the maps' second half: a row of maps is written where no row of the energy is still to be read. The first half
-     * holds it on its way. */
+    /* The energy takes the maps' second half: a row of maps is written where no row of the energy is still to be read. The first
+     * half holds it on its way. */
     g->energy = g->maps != NULL ? (float *)(void *)(g->maps + side * side * (AST_DIRECTIONS - sizeof *g->energy)) : NULL;
     g->row = ast_arena_take(arena, 2 * side * AST_DIRECTIONS, sizeof *g->row);
 }

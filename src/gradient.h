@@ -28,8 +28,8 @@ static inline int ast_gradient_edge(int i, int count) {
 void ast_gradient_layout(struct ast_gradient *g, const ast_config *cfg, struct ast_arena *arena);
 /* Makes the maps of an image, for an object of about this size in it. */
 void ast_gradient_prepare(struct ast_gradient *g, const ast_frame *image, float object_width, float object_height);
-/* The cells of a window of that image: cells x cells x AST_DIRECTIONS floats of unit norm (an exactly flat window stays small), times the
- * weight. */
+/* The cells of a window of that image: cells x cells x AST_DIRECTIONS floats of unit norm (an exactly flat window stays small),
+ * times the weight. */
 void ast_gradient_cells(const struct ast_gradient *g, const ast_box *window, float *out);
 
 #endif

@@ -118,8 +118,8 @@ static void blur_across(const float *restrict map, int width, int radius, uint8_
 
 enum { BLOCK = 8 * AST_DIRECTIONS }; /* bytes of a row of maps that are averaged side by side */
 
-/* sum / count, rounded, of BLOCK sums, as (sum + count / 2) * inverse / 2^24: exact, because count < 256 and a sum is at most 255 count;
- * then the sums move on. */
+/* sum / count, rounded, of BLOCK sums, as (sum + count / 2) * inverse / 2^24: exact, because count < 256 and a sum is at most 255
+ * count; then the sums move on. */
 AST_ALWAYS_INLINE void average_and_move(uint32_t *restrict sum, uint32_t half, uint32_t inverse, const uint8_t *restrict enter,
                                         const uint8_t *restrict leave, uint8_t *restrict out) {
 #if AST_HAS_VECTORS

@@ -1,5 +1,5 @@
-/* Vectors of the compiler's own making (GNU C), as wide as the file that includes this says (AST_VECTOR_BYTES): no instruction is named.
- * Without them a vector is one number, and every sum has the same order. */
+/* Vectors of the compiler's own making (GNU C), as wide as the file that includes this says (AST_VECTOR_BYTES): no instruction is
+ * named. Without them a vector is one number, and every sum has the same order. */
 #ifndef AST_KERNEL_VECTORS_H
 #define AST_KERNEL_VECTORS_H
 
@@ -46,9 +46,9 @@ AST_ALWAYS_INLINE void transpose_four(const float *a, const float *b, const floa
 #endif
 
 #if AST_HAS_VECTORS
-/* Bytes become numbers twice as wide in each step, which is what processors have instructions for; where one does more at once and the
- * compiler does not see it, the file that includes this names it (AST_EIGHT_NUMBERS, AST_SIXTEEN_NUMBERS, AST_EIGHT_DOUBLES). Passed by
- * address: how vectors wider than the processor's are returned differs from one to the next. */
+/* Bytes become numbers twice as wide in each step, which is what processors have instructions for; where one does more at once and
+ * the compiler does not see it, the file that includes this names it (AST_EIGHT_NUMBERS, AST_SIXTEEN_NUMBERS, AST_EIGHT_DOUBLES).
+ * Passed by address: how vectors wider than the processor's are returned differs from one to the next. */
 typedef uint8_t eight_bytes __attribute__((vector_size(8), aligned(1), may_alias));
 typedef uint16_t eight_halves __attribute__((vector_size(16)));
 typedef int32_t four_words __attribute__((vector_size(16)));

@@ -40,22 +40,24 @@ struct ast_gram_model;
 struct ast_kernels {
     const char *name; /* of the instruction set */
 
-    /* Interleaves depth elements of used <= AST_LANES columns of m (ld floats apart): panel[d * AST_LANES + l]. Unused lanes repeat the
-     * first column. */
+    /* Interleaves depth elements of used <= AST_LANES columns of m (ld floats apart): panel[d * AST_LANES + l]. Unused lanes repeat
+     * the first column. */
     void (*pack)(float *panel, const float *m, size_t ld, int used, int depth);
-    /* sums[c * ld_sums + l] += sum over d < depth of panel[d * AST_LANES + l] * columns[c * ld + d], for c < count and every lane. */
+    /* sums[c * ld_sums + l] += sum over d < depth of panel[d * AST_LANES + l] * columns[c * ld + d], for c < count and every
+     * lane. */
     void (*panel_product)(const float *panel, int depth, const float *columns, size_t ld, int count, float *sums, size_t ld_sums);
 
     /* x'y, in a fixed order: ast_dot. */
     ast_real (*dot)(const float *x, const float *y, int n);
     /* x[i] = e^x[i], for those whose result is a number. */
     void (*exponentials)(ast_real *x, int n);
-    /* Takes the origin from `count` vectors, ld floats apart; square[i]: the squared length of what is left of vector i, as ast_dot sums. */
+    /* Takes the origin from `count` vectors, ld floats apart; square[i]: the squared length of what is left of vector i, as ast_dot
+     * sums. */
     void (*depart)(float *vectors, size_t ld, int count, const float *origin, int n, ast_real *square);
     /* L^-1 applied to lanes of vectors of `size` floats, in place; L is row-major, its diagonal inverted. */
     void (*solve)(const float *factor, int size, float *vectors);
-    /* Lanes of symmetric eigen-problems, n x n (column-major, the triangle i <= j at i * n + j; destroyed): values (n) descending, vectors
-     * (n x n, as columns; NULL: not wanted). */
+    /* Lanes of symmetric eigen-problems, n x n (column-major, the triangle i <= j at i * n + j; destroyed): values (n) descending,
+     * vectors (n x n, as columns; NULL: not wanted). */
     void (*eigen)(int n, ast_real *a, ast_real *values, ast_real *vectors);
     /* The same without vectors, by the way that is fastest. spare: n + 1 lanes. */
     void (*eigenvalues)(int n, ast_real *a, ast_real *values, ast_real *spare);

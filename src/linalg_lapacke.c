@@ -15,8 +15,8 @@ static int product(int rows, int cols, int depth, const float *a, int lda, const
     return 0;
 }
 
-/* OpenBLAS splits large products over threads, which would make sums depend on the number of cores, and takes its buffer at the first
- * call that needs one: not a small product, but any triangular solve. One thread for the process, and the buffer now, so that
+/* OpenBLAS splits large products over threads, which would make sums depend on the number of cores, and takes its buffer at the
+ * first call that needs one: not a small product, but any triangular solve. One thread for the process, and the buffer now, so that
  * ast_step neither varies nor allocates. */
 static int prepare(void) {
     const float one[1] = {1.0f};

@@ -1,5 +1,5 @@
-/* Reduction of the argument to a short interval, and a polynomial there. The polynomials are minimax ones, their coefficients rounded
- * one after the other so that each makes up for the last one's rounding (what the tool Sollya calls fpminimax). */
+/* Reduction of the argument to a short interval, and a polynomial there. The polynomials are minimax ones, their coefficients
+ * rounded one after the other so that each makes up for the last one's rounding (what the tool Sollya calls fpminimax). */
 #include "maths.h"
 
 #include <float.h>
@@ -49,7 +49,8 @@ float ast_logf(float x) {
     return (float)e * 0.693145752f + (f - (half - (s * (half + rest) + (float)e * 1.42860677e-6f)));
 }
 
-/* The quadrant k of x = k pi / 2 + r, |r| <= pi / 4; pi / 2 in three parts, the first two short enough that products with k are exact. */
+/* The quadrant k of x = k pi / 2 + r, |r| <= pi / 4; pi / 2 in three parts, the first two short enough that products with k are
+ * exact. */
 static int quadrant(float x, float *r) {
     const int k = (int)(x * 0.636619747f + (x < 0.0f ? -0.5f : 0.5f));
     const float q = (float)k;

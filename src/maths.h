@@ -44,8 +44,8 @@ float ast_cosf(float x);
 /* Arc cosine: 1.5 ulps, 0 .. pi. An argument outside -1 .. 1 counts as the nearer end. */
 float ast_acosf(float x);
 
-/* The same in double precision, for builds whose ast_real (real.h) is double: 1 ulp for the exponential, 1.5 for the cosine and its inverse; the cosine for
- * |x| <= pi / 3 only, all that is asked of it. */
+/* The same in double precision, for builds whose ast_real (real.h) is double: 1 ulp for the exponential, 1.5 for the cosine and its
+ * inverse; the cosine for |x| <= pi / 3 only, all that is asked of it. */
 double ast_exp_double(double x);
 double ast_cos_double(double x);
 double ast_acos_double(double x);

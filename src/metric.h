@@ -3,8 +3,8 @@
  *
  *     M = I - Zc' (Zc Zc' + ridge tr(Zc Zc') I)^-1 Zc,   Zc = the background's vectors minus their mean m_b, as rows.
  *
- * M is never formed. With L L' the Cholesky factorisation of the matrix in brackets and t(x) = L^-1 Zc x, x'My = x'y - t(x)'t(y); so
- * ordinary inner products become M's by a correction of length `size`. */
+ * M is never formed. With L L' the Cholesky factorisation of the matrix in brackets and t(x) = L^-1 Zc x, x'My = x'y - t(x)'t(y);
+ * so ordinary inner products become M's by a correction of length `size`. */
 #ifndef AST_METRIC_H
 #define AST_METRIC_H
 
@@ -27,7 +27,8 @@ void ast_metric_layout(struct ast_metric *m, int size, float ridge, int mean, in
  * fresh: room for lanes of t, here and below. */
 void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels, const float *gram, int columns, int ld,
                         float *fresh);
-/* Turns inner products with the columns (lanes) into M's, but for those with the background's vectors, and lanes of squared norms too. */
+/* Turns inner products with the columns (lanes) into M's, but for those with the background's vectors, and lanes of squared norms
+ * too. */
 void ast_metric_apply(const struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square,
                       float *fresh);
 /* t of a column that is none of the background's vectors. */

@@ -5,7 +5,8 @@
 enum { LEVELS = 16 }; /* levels side by side: independent sums, so that none waits for the last one's rounding */
 #define WHITE (1.0f / 255.0f)
 
-/* Levels from 0 .. 255 to 0 .. 1; sums[l] += the levels l, l + LEVELS, .. of the patch, of which `whole` is a multiple of LEVELS. */
+/* Levels from 0 .. 255 to 0 .. 1; sums[l] += the levels l, l + LEVELS, .. of the patch, of which `whole` is a multiple of
+ * LEVELS. */
 static void sum_levels(float *restrict patch, int whole, ast_real *restrict sums) {
 #if AST_HAS_VECTORS
     for (int i = 0; i < whole; i += LEVELS)

@@ -1,5 +1,5 @@
-/* The library's own matrix product: c = a' b, a depth x rows (lda), b depth x cols (ldb), c rows x cols (ldc), column-major. An element
- * of c has the same bits wherever it stands in whatever product, on every processor. */
+/* The library's own matrix product: c = a' b, a depth x rows (lda), b depth x cols (ldb), c rows x cols (ldc), column-major. An
+ * element of c has the same bits wherever it stands in whatever product, on every processor. */
 #ifndef AST_PRODUCT_H
 #define AST_PRODUCT_H
 

@@ -1,5 +1,5 @@
-/* The matrix product's innermost part: lanes of one operand against columns of the other. Each sum runs over its elements in order, in
- * a lane of its own, so the width of a vector does not show in the result. */
+/* The matrix product's innermost part: lanes of one operand against columns of the other. Each sum runs over its elements in order,
+ * in a lane of its own, so the width of a vector does not show in the result. */
 
 #include "kernel_vectors.h"
 

@@ -1,4 +1,5 @@
-/* Resampling of a window of a frame to a grid, with linear interpolation and, where the window is larger than the grid, averaging. */
+/* Resampling of a window of a frame to a grid, with linear interpolation and, where the window is larger than the grid,
+ * averaging. */
 #ifndef AST_RESAMPLE_H
 #define AST_RESAMPLE_H
 
@@ -10,8 +11,9 @@
  * averaged completely, larger ones over 30 pixels around each sample. */
 enum { AST_TAPS = 32 };
 
-/* Rows of the grid that are made at once, and source pixels of each that are summed at a time: no fewer than the taps, and with few lanes
- * no more, to save memory. With vectors of all lanes a chunk of pixels is summed in one step, and may lie partly beside what is wanted. */
+/* Rows of the grid that are made at once, and source pixels of each that are summed at a time: no fewer than the taps, and with few
+ * lanes no more, to save memory. With vectors of all lanes a chunk of pixels is summed in one step, and may lie partly beside what
+ * is wanted. */
 enum {
     AST_RESAMPLER_ROWS = AST_LANES,
     AST_RESAMPLER_PIXELS = AST_LANES < 16 ? AST_TAPS : 128,
@@ -45,8 +47,8 @@ void ast_resampler_aim(struct ast_resampler *r, const ast_frame *frame, const as
 /* The same for `count` of the grid's columns from `begin` on. */
 void ast_resampler_aim_columns(struct ast_resampler *r, const ast_frame *frame, const ast_box *window, int width, int height,
                                int begin, int count);
-/* count <= AST_RESAMPLER_ROWS rows of the grid (as many floats each as columns are aimed at, 0 .. 255; ld floats apart) from the frame
- * aimed at. */
+/* count <= AST_RESAMPLER_ROWS rows of the grid (as many floats each as columns are aimed at, 0 .. 255; ld floats apart) from the
+ * frame aimed at. */
 void ast_resampler_rows(struct ast_resampler *r, const ast_frame *frame, int row, int count, float *out, size_t ld);
 
 #endif

@@ -1,5 +1,5 @@
-/* Resampling: an axis' weights for all outputs side by side, and a row of a grid in each lane, because then the second pass works on the
- * same output of all of them side by side. */
+/* Resampling: an axis' weights for all outputs side by side, and a row of a grid in each lane, because then the second pass works
+ * on the same output of all of them side by side. */
 #include "kernel_vectors.h"
 #include "maths.h"
 #include "resample.h"
@@ -20,8 +20,8 @@ static inline int32_t whole_below(float v) {
 }
 
 /* Samples lie at start + (i + 1/2) step - 1/2 (pixel centres at integers), linearly interpolated, averaged over a box of width
- * sqrt(step^2 - 1) where the window is larger than the grid. That width gives the filter the variance of a box of one step; it starts
- * at zero, so that the patch changes smoothly with the scale. */
+ * sqrt(step^2 - 1) where the window is larger than the grid. That width gives the filter the variance of a box of one step; it
+ * starts at zero, so that the patch changes smoothly with the scale. */
 static void axis(struct ast_axis *restrict axis, float start, float extent, int source_length) {
     const int length = axis->length, last = source_length - 1;
     const float step = extent / (float)axis->total, limit = (float)(AST_TAPS - 3);
@@ -99,7 +99,8 @@ AST_ALWAYS_INLINE void sum_chunk(const uint8_t *source, size_t stride, const flo
 }
 
 /* Sums the source rows of `count` output rows from `row` on over the pixels first .. first + pixels - 1, and interleaves them:
- * line[GRID_ROWS (MARGIN + x) + k]. What lies in front of the first pixel and beyond the last, and in the lanes of no row, has no meaning. */
+ * line[GRID_ROWS (MARGIN + x) + k]. What lies in front of the first pixel and beyond the last, and in the lanes of no row, has no
+ * meaning. */
 static void sum_rows(const struct ast_axis *rows, const ast_frame *frame, int row, int count, int first, int pixels,
                      float *restrict line) {
     const size_t length = (size_t)rows->length, stride = (size_t)frame->stride;

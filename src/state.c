@@ -1,8 +1,8 @@
 /* Save and restore: the tracker's state as a block of bytes that is the same on every machine.
  *
- * One routine visits the state; a codec counts, writes, checks or reads what it visits, so the four cannot disagree. The block holds
- * a magic, the format's version, the configuration, the state with every slot of the rings, and a 64-bit FNV-1a of all that. A block is checked
- * completely, each value against its legal range, before the first byte of the tracker changes. */
+ * One routine visits the state; a codec counts, writes, checks or reads what it visits, so the four cannot disagree. The block
+ * holds a magic, the format's version, the configuration, the state with every slot of the rings, and a 64-bit FNV-1a of all that.
+ * A block is checked completely, each value against its legal range, before the first byte of the tracker changes. */
 #include "tracker.h"
 
 #include <string.h>

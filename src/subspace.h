@@ -26,8 +26,8 @@ int ast_images_svd(const struct ast_linalg *la, const struct ast_images *images,
                    ast_real *work, size_t work_count);
 /* Singular values above the rank tolerance, at most n. */
 int ast_rank(const ast_real *values, int count, int n, ast_real norm);
-/* Mean and basis (dim x n, stride floats a column, absent directions zero) of a set; *rank receives the directions present. centred:
- * the basis of images minus mean, otherwise of the images minus origin (NULL: as they are). */
+/* Mean and basis (dim x n, stride floats a column, absent directions zero) of a set; *rank receives the directions present.
+ * centred: the basis of images minus mean, otherwise of the images minus origin (NULL: as they are). */
 int ast_subspace_of(const struct ast_linalg *la, const struct ast_images *images, int centred, const float *origin, int n,
                     float *mean, float *basis, int stride, int *rank, ast_real *work, size_t work_count);
 

@@ -1,5 +1,4 @@
-/* The total of eight sums, which a compiler can hold side by side without reordering any of them, in the one order that each such sum
- * has. */
+/* The total of eight sums, which a compiler can hold side by side, in the one order that each such total is taken in. */
 #ifndef AST_TOTAL_H
 #define AST_TOTAL_H
 

@@ -5,8 +5,8 @@
 #include "arena.h"
 #include "build.h"
 
-/* Work in parts 0 .. parts - 1. A part is done by worker number 0 .. count - 1, where parts that are done at the same time have different
- * workers; 0, or a failure. */
+/* Work in parts 0 .. parts - 1. A part is done by worker number 0 .. count - 1, where parts that are done at the same time have
+ * different workers; 0, or a failure. */
 struct ast_task {
     int (*part)(void *shared, int worker, int part);
     void *shared;
@@ -16,8 +16,8 @@ struct ast_task {
 
 struct ast_workers;
 
-/* Room for count workers, of which the caller's thread is one. NULL for one worker, who needs none and whom NULL stands for below; and
- * while the arena counts. */
+/* Room for count workers, of which the caller's thread is one. NULL for one worker, who needs none and whom NULL stands for below;
+ * and while the arena counts. */
 struct ast_workers *ast_workers_layout(int count, struct ast_arena *arena);
 /* Starts their threads. 0, or a failure, after which there are none. */
 int ast_workers_start(struct ast_workers *workers);

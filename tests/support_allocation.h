@@ -1,8 +1,8 @@
 /* Counts every allocation and release of the process, those in shared libraries and mappings of memory included.
  *
  * To be included by one file of a test program: it replaces malloc and its kin for that program alone. Under a sanitizer, which has
- * an allocator of its own, it counts by the sanitizer's hooks, and mappings are not seen. The including file must define _GNU_SOURCE
- * before anything else. */
+ * an allocator of its own, it counts by the sanitizer's hooks, and mappings are not seen. The including file must define
+ * _GNU_SOURCE before anything else. */
 #ifndef SUPPORT_ALLOCATION_H
 #define SUPPORT_ALLOCATION_H
 

@@ -1,5 +1,5 @@
-/* The command as a shell would run it, in a directory of its own. The program is ../asttrack from where the test lies, or AST_COMMAND.
- * What goes wrong here fails the running test. */
+/* The command as a shell would run it, in a directory of its own. The program is ../asttrack from where the test lies, or
+ * AST_COMMAND. What goes wrong here fails the running test. */
 #ifndef SUPPORT_COMMAND_H
 #define SUPPORT_COMMAND_H
 

@@ -1,7 +1,7 @@
 /* What the type of ast_real costs: the one place for the tests' bounds that depend on it.
  *
- * In double precision all that a test sees is that results are rounded to float. With -DAST_REAL=float sums and decompositions round
- * as coarsely as their results do, and errors grow as the standard analysis says (u = FLT_EPSILON / 2, the unit roundoff):
+ * In double precision all that a test sees is that results are rounded to float. With -DAST_REAL=float sums and decompositions
+ * round as coarsely as their results do, and errors grow as the standard analysis says (u = FLT_EPSILON / 2, the unit roundoff):
  *
  *  - a sum of `count` terms, one after the other, is good to (count - 1) u times the sum of their sizes;
  *  - e^x is good to |x| times the relative error of x, beside its own;
@@ -36,9 +36,9 @@ static inline double real_cosine_slack(void) {
     return by_real(4, 16) * (double)FLT_EPSILON;
 }
 
-/* Of what is computed from the singular vectors of a set of this condition. The fast path takes what a candidate adds to a set from a
- * difference of squares that may have lost nineteen parts of twenty: twenty times the rounding, of a dozen operations. The most seen is
- * 160. */
+/* Of what is computed from the singular vectors of a set of this condition. The fast path takes what a candidate adds to a set from
+ * a difference of squares that may have lost nineteen parts of twenty: twenty times the rounding, of a dozen operations. The most
+ * seen is 160. */
 static inline double real_basis_slack(double condition) {
     return by_real(0, 256 * (double)FLT_EPSILON) * condition;
 }

@@ -5,8 +5,8 @@
 #include "support_backends.h"
 #include "tracker.h"
 
-/* A configuration with all parts at work in little time: 40 particles (a full tile and a part of one), patches of 8 x 8, P = 3, k = 3,
- * W = 2; otherwise the paper preset. */
+/* A configuration with all parts at work in little time: 40 particles (a full tile and a part of one), patches of 8 x 8, P = 3,
+ * k = 3, W = 2; otherwise the paper preset. */
 ast_config small_config(void);
 /* The same with every part of the robust preset: a view of 64 pixels, 4 x 4 cells of gradients, 16 background vectors. */
 ast_config small_robust_config(void);
@@ -16,7 +16,8 @@ ast_config small_config_of(int which);
 /* A tracker in a block of its own, released by ast_free. */
 ast_tracker *tracker_new(const ast_config *cfg, const struct ast_linalg *la);
 
-/* A block of exactly size bytes at an address that leaves this remainder by AST_ALIGNMENT, every byte `fill`, guard bytes around. */
+/* A block of exactly size bytes at an address that leaves this remainder by AST_ALIGNMENT, every byte `fill`, guard bytes
+ * around. */
 struct guarded {
     unsigned char *memory;
     size_t size;

@@ -295,8 +295,8 @@ static int write_line(const char *path, const char *line) {
     return written;
 }
 
-/* A view of the file systems that this process alone has. Who is not the superuser becomes so for it, under the same number, without
- * which no file could be made in what is mounted. */
+/* A view of the file systems that this process alone has. Who is not the superuser becomes so for it, under the same number,
+ * without which no file could be made in what is mounted. */
 static int own_mounts(void) {
     const unsigned user = (unsigned)geteuid(), group = (unsigned)getegid();
     char users[64], groups[64];

@@ -1,5 +1,5 @@
-/* A backend that fails at its k-th call, for every k there is: the call returns the error, the tracker is what it was, byte for byte,
- * and what follows is what would have followed. */
+/* A backend that fails at its k-th call, for every k there is: the call returns the error, the tracker is what it was, byte for
+ * byte, and what follows is what would have followed. */
 #include <stdio.h>
 #include <string.h>
 

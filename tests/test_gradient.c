@@ -209,8 +209,8 @@ static void test_maps_for_every_number_of_cells(void) {
     }
 }
 
-/* Full contrast: lonely strokes, lines, steps and squares. A stroke in an object of thin cells, whose surroundings are tall and empty,
- * exceeds what a byte holds, and is cut off there. */
+/* Full contrast: lonely strokes, lines, steps and squares. A stroke in an object of thin cells, whose surroundings are tall and
+ * empty, exceeds what a byte holds, and is cut off there. */
 static void test_maps_of_the_strongest_edges(void) {
     static uint8_t pixels[SIDE * SIDE];
     static const float objects[][2] = {{36, 36}, {12, 240}, {90, 12}};
@@ -436,8 +436,8 @@ static void test_offset_of_the_light_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(before, cells, (size_t)length_of() * sizeof *cells);
 }
 
-/* Contrast, too, is evened out; what remains of a gain is the noise floor of 6 levels and the rounding of grey levels. The unit vector
- * of a texture moves by less than these lengths; that of another texture is 1 away. */
+/* Contrast, too, is evened out; what remains of a gain is the noise floor of 6 levels and the rounding of grey levels. The unit
+ * vector of a texture moves by less than these lengths; that of another texture is 1 away. */
 static void test_gain_of_the_light_changes_little(void) {
     static const struct { double gain, offset, limit; } lights[] = {{0.7, 20, 0.03}, {0.5, 60, 0.04}, {1.1, 0, 0.025}};
     static uint8_t plain[SIDE * SIDE], lit[SIDE * SIDE];

@@ -1,4 +1,5 @@
-/* The kernels of every instruction set that this processor has give the same bits as the plain ones, and those what they promise. */
+/* The kernels of every instruction set that this processor has give the same bits as the plain ones, and those what they
+ * promise. */
 #include "kernels.h"
 
 #include <math.h>
@@ -200,8 +201,8 @@ static void test_lanes_of_eigenproblems(void) {
     }
 }
 
-/* Squared cosines of two subspaces with three directions each: from all alike to none alike, values equal, nearly equal and far apart,
- * in neighbouring lanes, so that the closed form and the rotations meet. */
+/* Squared cosines of two subspaces with three directions each: from all alike to none alike, values equal, nearly equal and far
+ * apart, in neighbouring lanes, so that the closed form and the rotations meet. */
 static void test_every_constellation_of_three_eigenvalues(void) {
     static const double levels[] = {1, 1 - 1e-12, 1 - 1e-6, 0.9, 0.5, 1e-3, 1e-9, 0};
     enum { LEVELS = sizeof levels / sizeof levels[0] };

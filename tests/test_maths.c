@@ -97,8 +97,8 @@ struct twice {
     double from, to, bound;
 };
 
-/* What the reference itself may be off by, ulps: nothing that counts, but where long double has no more digits than double, as on some
- * processors and under valgrind. */
+/* What the reference itself may be off by, ulps: nothing that counts, but where long double has no more digits than double, as on
+ * some processors and under valgrind. */
 static double doubt(void) {
     const volatile long double one = 1.0L, little = DBL_EPSILON / 4;
     return one + little == one ? 1.0 : 0.0;

@@ -472,8 +472,8 @@ static void test_threads_allocate_nothing(void) {
     }
 }
 
-/* A threaded BLAS starts its threads when it is loaded, and these take memory in their own time, which could not be told from what the
- * library does: it is loaded again without them. */
+/* A threaded BLAS starts its threads when it is loaded, and these take memory in their own time, which could not be told from what
+ * the library does: it is loaded again without them. */
 static void without_threads_of_blas(char **argv) {
     const char *name = "OPENBLAS_NUM_THREADS", *threads = getenv(name);
     if (BACKENDS == 1 || (threads != NULL && strcmp(threads, "1") == 0)) return;

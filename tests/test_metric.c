@@ -1,5 +1,5 @@
-/* The metric learned from a background against its definition: M = I - Zc' (Zc Zc' + ridge tr(Zc Zc') I)^-1 Zc, formed as a dense matrix
- * in double. */
+/* The metric learned from a background against its definition: M = I - Zc' (Zc Zc' + ridge tr(Zc Zc') I)^-1 Zc, formed as a dense
+ * matrix in double. */
 #include "metric.h"
 
 #include <math.h>
@@ -67,8 +67,8 @@ void setUp(void) {
 void tearDown(void) {
 }
 
-/* Vectors about the size of the robust preset's: the background varies along a few directions more than along the others, its mean is
- * not quite the mean of the set. */
+/* Vectors about the size of the robust preset's: the background varies along a few directions more than along the others, its mean
+ * is not quite the mean of the set. */
 static void fill(struct problem *p, uint64_t seed) {
     enum { STRONG = 4 };
     struct noise noise = {seed};
@@ -180,8 +180,8 @@ static int next(const struct problem *p, int x) {
     return x == LEAD ? LEAD + 1 + p->size : x + 1;
 }
 
-/* Pairs of the columns that the metric knows, and a tile with all of them, against the dense matrix; relative to the vectors' lengths. Returns the largest
- * difference. */
+/* Pairs of the columns that the metric knows, and a tile with all of them, against the dense matrix; relative to the vectors'
+ * lengths. Returns the largest difference. */
 static double largest_error(struct problem *p, const struct ast_linalg *la, int count) {
     ast_real square[AST_LANES];
     double worst = 0;
@@ -250,7 +250,8 @@ static void test_tiles_of_any_size(void) {
 
 /* ---- What it means ---- */
 
-/* A background that varies by s_l along axis l alone: along that axis lengths are multiplied by r / (s_l^2 + r), r = ridge sum s^2. */
+/* A background that varies by s_l along axis l alone: along that axis lengths are multiplied by r / (s_l^2 + r), r = ridge sum
+ * s^2. */
 static void test_directions_of_the_background_count_less(void) {
     enum { DIM = 24, SIZE = 8 };
     static const double deviations[SIZE] = {3, 2, 1, 1, 0.5, 0.25, 0.1, 0};
@@ -364,8 +365,8 @@ static void test_a_background_without_variation_is_the_identity(void) {
         }
 }
 
-/* Variation of the size of single precision's rounding, as an even ramp in the picture gives: what rounding makes of it must not pass
- * for a direction of the background, least of all for one in which squares are negative. */
+/* Variation of the size of single precision's rounding, as an even ramp in the picture gives: what rounding makes of it must not
+ * pass for a direction of the background, least of all for one in which squares are negative. */
 static void test_a_background_that_hardly_varies_is_harmless(void) {
     struct noise noise = {34};
     for (int b = 0; b < BACKENDS; b++)

@@ -271,7 +271,8 @@ static void test_walk_is_gaussian(void) {
     TEST_ASSERT_DOUBLE_WITHIN(5 / sqrt(MOST), 0, correlation(z[0], z[0] + 1, MOST - 1)); /* of neighbours */
 }
 
-/* Quasi-random steps: each axis advances by a fixed part of a turn, 1 / g, 1 / g^2, 1 / g^3 with g^4 = g + 1, from a random start. */
+/* Quasi-random steps: each axis advances by a fixed part of a turn, 1 / g, 1 / g^2, 1 / g^3 with g^4 = g + 1, from a random
+ * start. */
 static void test_quasi_random_walk_is_an_additive_sequence(void) {
     enum { COUNT = 2000 };
     ast_config cfg = walk_config(8.0f, 5.0f, 0.05f);

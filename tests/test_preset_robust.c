@@ -150,8 +150,8 @@ static void test_follows_before_an_even_background(void) {
 
 /* ---- Memory and time do not know the frame ---- */
 
-/* The scene as it is, and set into a frame of 4K amid noise: the same boxes, one shifted. Coordinates are rounded elsewhere there, so
- * after some frames another particle may win, of the same object. */
+/* The scene as it is, and set into a frame of 4K amid noise: the same boxes, one shifted. Coordinates are rounded elsewhere there,
+ * so after some frames another particle may win, of the same object. */
 static void test_a_frame_of_4k_is_tracked_like_a_small_one(void) {
     enum { LARGE_WIDTH = 3840, LARGE_HEIGHT = 2160, X = 2048, Y = 1024 };
     uint8_t *large = malloc((size_t)LARGE_WIDTH * LARGE_HEIGHT);

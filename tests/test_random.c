@@ -124,8 +124,8 @@ static void test_quantile_inverts_the_error_function(void) {
     }
     TEST_ASSERT_TRUE_MESSAGE(worst < 1e-6, "the middle");
 
-    /* Every tail that a uniform number can have, in halvings. The approximation is good to a few units in the last place of a float,
-     * which are 5e-7 each beyond 4. */
+    /* Every tail that a uniform number can have, in halvings. The approximation is good to a few units in the last place of a
+     * float, which are 5e-7 each beyond 4. */
     for (float p = 0.25f; p >= 0x1p-24f; p *= 0.5f) {
         const double low = normal_inverse((double)p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6 * fmax(1.0, -low), low, (double)ast_normal_quantile(p));

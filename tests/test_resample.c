@@ -55,7 +55,8 @@ static void resample(const ast_frame *frame, const ast_box *window, float *out) 
 
 /* ---- The definition ---- */
 
-/* Weight of every source pixel in one grid pixel of an axis: the box is cut into slices, and each slice's middle is interpolated. */
+/* Weight of every source pixel in one grid pixel of an axis: the box is cut into slices, and each slice's middle is
+ * interpolated. */
 static void axis_reference(double *weight, int length, double start, double extent, int grid_length, int index) {
     enum { SLICES = 1500 };
     const double step = extent / grid_length, at = start + (index + 0.5) * step - 0.5;
@@ -220,8 +221,8 @@ static void test_frame_of_one_pixel(void) {
     }
 }
 
-/* The widest frame, its ends and middle, up to a window over all of it. Places that a float holds exactly: far from zero a float has
- * no finer ones. */
+/* The widest frame, its ends and middle, up to a window over all of it. Places that a float holds exactly: far from zero a float
+ * has no finer ones. */
 static void test_frame_of_one_long_row(void) {
     uint8_t *pixels = malloc(AST_MAX_FRAME);
     TEST_ASSERT_NOT_NULL(pixels);

@@ -191,8 +191,8 @@ static double basis_gap(const struct bench *b, int candidate, double *condition)
     return n < count && square[n - 1] > 0 ? (double)((square[n - 1] - square[n]) / square[n - 1]) : 1;
 }
 
-/* The promise is 1e-4, in single precision throughout 5e-4. Beyond it: the numbers are in single precision, arccosines near 1 are good to the square root of that only,
- * and a basis that is nearly a matter of choice turns with every rounding. */
+/* The promise is 1e-4, in single precision throughout 5e-4. Beyond it: the numbers are in single precision, arccosines near 1 are
+ * good to the square root of that only, and a basis that is nearly a matter of choice turns with every rounding. */
 static double slack_of(const struct bench *b, int candidate, double distance) {
     double condition;
     const double gap = basis_gap(b, candidate, &condition);

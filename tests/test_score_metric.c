@@ -1,6 +1,6 @@
-/* Scoring in the metric of a background, on a tracker's own vectors: every distance against its definition, in double, with M formed as
- * a dense matrix. In M's inner product, a candidate's basis is that of its set's n dominant directions, a model's basis is made
- * orthonormal, angles and lengths are M's, and the background's ratio is taken off. */
+/* Scoring in the metric of a background, on a tracker's own vectors: every distance against its definition, in double, with M
+ * formed as a dense matrix. In M's inner product, a candidate's basis is that of its set's n dominant directions, a model's basis
+ * is made orthonormal, angles and lengths are M's, and the background's ratio is taken off. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,8 +112,8 @@ static void known_free(struct known *known) {
     free(known->metric);
 }
 
-/* An orthonormal basis in M of the columns' span, dominant directions first; as many columns as exceed the tolerance. in_m: the columns
- * times M; out, out_m: the basis, and it times M. */
+/* An orthonormal basis in M of the columns' span, dominant directions first; as many columns as exceed the tolerance. in_m: the
+ * columns times M; out, out_m: the basis, and it times M. */
 static int orthonormal(const double *columns, const double *in_m, int dim, int count, double tolerance, double *out,
                        double *out_m) {
     ast_real gram[MOST_IMAGES * MOST_IMAGES], vectors[MOST_IMAGES * MOST_IMAGES], values[MOST_IMAGES];
@@ -164,7 +164,8 @@ static void distances(const struct known *known, const float *vector, double *di
         matrix_product(dim, model_rank, dim, known->metric, basis, model_m);
         TEST_ASSERT_EQUAL_INT(model_rank, orthonormal(basis, model_m, dim, model_rank, 0, other, other_m));
 
-        /* Principal angles: arccosines of the singular values of U_i'M U_j; directions absent from one alone are at right angles. */
+        /* Principal angles: arccosines of the singular values of U_i'M U_j; directions absent from one alone are at right
+         * angles. */
         matrix_product_transposed(rank, model_rank, dim, own, other_m, cross);
         matrix_product_transposed(model_rank, model_rank, rank, cross, cross, square);
         for (int i = 0; i < model_rank * model_rank; i++) gram[i] = (ast_real)square[i];
@@ -346,7 +347,8 @@ static ast_config bench_config(int which) {
     return cfg;
 }
 
-/* Histories whose vectors differ by less and less, and candidates that differ from them as little: what decides lies in differences. */
+/* Histories whose vectors differ by less and less, and candidates that differ from them as little: what decides lies in
+ * differences. */
 static void test_histories_that_are_nearly_frozen(void) {
     struct noise noise = {5};
     for (int b = 0; b < BACKENDS; b++)
@@ -403,8 +405,8 @@ static void test_candidates_at_special_places(void) {
 }
 
 /* Candidates that leave the history's span by less and less, in a metric that shrinks the span because the background varies as the
- * object does. What they leave it by is a direction of their own down to a two-hundredth of the way from the history's mean; what is
- * a thousandth of that is none. Where the metric has shrunk the way itself, rounding must not pass for one either. */
+ * object does. What they leave it by is a direction of their own down to a two-hundredth of the way from the history's mean; what
+ * is a thousandth of that is none. Where the metric has shrunk the way itself, rounding must not pass for one either. */
 static void test_candidates_that_hardly_leave_the_history(void) {
     static const double outside[] = {1, 0.1, 0.01, 0.005, 3e-6, 0};
     static const float ridges[] = {0.1f, 1e-3f, 1e-4f};

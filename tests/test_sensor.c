@@ -1,5 +1,6 @@
-/* A sensor that fails: black, saturated and frozen pictures, with the presets for microcontrollers. Every result is a number, black and
- * saturated pictures are not trusted, and the object is found again when the picture returns. Minutes of it: make test-firmware. */
+/* A sensor that fails: black, saturated and frozen pictures, with the presets for microcontrollers. Every result is a number, black
+ * and saturated pictures are not trusted, and the object is found again when the picture returns. Minutes of it: make
+ * test-firmware. */
 #include "asttrack.h"
 
 #include <math.h>

@@ -141,7 +141,8 @@ static void test_format_is_as_documented(void) {
 
 /* ---- Going on ---- */
 
-/* Saved after every step of a sequence, restored into a new tracker elsewhere whose memory held something else: both go on alike. */
+/* Saved after every step of a sequence, restored into a new tracker elsewhere whose memory held something else: both go on
+ * alike. */
 static void test_restored_tracker_continues_bit_for_bit(void) {
     for (int which = 0; which < SMALL_CONFIGS; which++) {
         for (int b = 0; b < BACKENDS; b++) {
@@ -200,7 +201,8 @@ static void test_restore_replaces_everything(void) {
     }
 }
 
-/* Whatever a tracker saves it takes back: among others a cloud in which one particle has all the weight, in shares of every model. */
+/* Whatever a tracker saves it takes back: among others a cloud in which one particle has all the weight, in shares of every
+ * model. */
 static void test_every_saved_state_is_accepted(void) {
     static const int bags[] = {1, 3, 7, 10, 26, AST_MAX_BAG};
     for (size_t b = 0; b < sizeof bags / sizeof bags[0]; b++) {

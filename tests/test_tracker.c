@@ -247,8 +247,8 @@ static void test_light_does_not_matter(void) {
     ast_free(t);
 }
 
-/* A score near one while the object is there, near nothing when it is not; the status follows with its hysteresis, and tracking comes
- * back with the object. */
+/* A score near one while the object is there, near nothing when it is not; the status follows with its hysteresis, and tracking
+ * comes back with the object. */
 static void test_status_tells_when_the_object_is_gone(void) {
     ast_config cfg = preset(AST_PRESET_PAPER); /* without a guard, which has its own ways: test_guard */
     cfg.walk_x = cfg.walk_y = 2.0f;
@@ -281,8 +281,8 @@ static void test_status_tells_when_the_object_is_gone(void) {
     ast_free(t);
 }
 
-/* A full bag keeps what it knows of the object against a frame that is not like it, though the guard trusts the frame; one with room left
- * takes all that is trusted. */
+/* A full bag keeps what it knows of the object against a frame that is not like it, though the guard trusts the frame; one with
+ * room left takes all that is trusted. */
 static void test_a_full_bag_is_selective(void) {
     enum { BEFORE = 12, AFTER = 9 };
     static const float selective[] = {0.0f, 0.85f};
@@ -342,7 +342,8 @@ static ast_box particle_box(const ast_particles *p, int i) {
     return box;
 }
 
-/* Before the bag has a model: alpha times the squared distance to the mean of the patches so far (1 instead of alpha without means). */
+/* Before the bag has a model: alpha times the squared distance to the mean of the patches so far (1 instead of alpha without
+ * means). */
 static void test_distances_before_the_first_model(void) {
     for (int model = AST_MODEL_AFFINE; model <= AST_MODEL_LINEAR; model++) {
         ast_config cfg = small_config();
@@ -471,8 +472,8 @@ static void test_history_holds_the_last_winners(void) {
     ast_free(t);
 }
 
-/* The bag: empty until P patches are known, then a model every W frames, the oldest replaced when it is full. A model's mean is that
- * of the winner's image set: the history before the step, and the winner. */
+/* The bag: empty until P patches are known, then a model every W frames, the oldest replaced when it is full. A model's mean is
+ * that of the winner's image set: the history before the step, and the winner. */
 static void test_bag_takes_a_model_every_w_frames(void) {
     static const int intervals[] = {1, 2, 3, 5};
     for (size_t w = 0; w < sizeof intervals / sizeof intervals[0]; w++) {
@@ -664,8 +665,8 @@ static void test_start_sequence_clamps_the_scale(void) {
 
 /* ---- Repeating ---- */
 
-/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed; larger: pixels by which the boxes
- * are larger than the object. */
+/* Starts with as many boxes as the history wants, so that a model is made and the backend is needed; larger: pixels by which the
+ * boxes are larger than the object. */
 static int start_with_model(ast_tracker *t, int history, float larger) {
     const ast_box box = truth(0);
     const ast_frame frame = render_frame(&scene, &box);
@@ -855,8 +856,8 @@ static void test_frame_of_one_pixel(void) {
     }
 }
 
-/* The frame becomes smaller and larger on the way: the state stays in pixels, the object is followed wherever it is in view, and the
- * cloud is inside the frame of the moment. */
+/* The frame becomes smaller and larger on the way: the state stays in pixels, the object is followed wherever it is in view, and
+ * the cloud is inside the frame of the moment. */
 static void change_frame_size(const ast_config *cfg) {
     ast_tracker *t = tracker_new(cfg, backends[0]);
     ast_result r;

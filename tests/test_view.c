@@ -215,7 +215,8 @@ static void test_pixels_are_the_resampled_window(void) {
     free(pixels);
 }
 
-/* A ramp keeps its level at every place: the middle of view pixel p lies at origin + (p + 1/2) pixel, pixel centres at whole numbers. */
+/* A ramp keeps its level at every place: the middle of view pixel p lies at origin + (p + 1/2) pixel, pixel centres at whole
+ * numbers. */
 static void test_pixels_lie_where_the_mapping_says(void) {
     uint8_t *pixels = noise_pixels(255 * 255, 10);
     const ast_frame frame = {pixels, 255, 255, 255};
@@ -253,8 +254,8 @@ static void test_fine_detail_is_averaged(void) {
 
 /* ---- Frames of any size ---- */
 
-/* The same scene in a frame of 4K and cut out of it: the same view, from the same memory. What the region and the resampling's support
- * leave out is not looked at. */
+/* The same scene in a frame of 4K and cut out of it: the same view, from the same memory. What the region and the resampling's
+ * support leave out is not looked at. */
 static void test_a_large_frame_shows_what_a_cropped_one_does(void) {
     enum { WIDTH = 3840, HEIGHT = 2160, X = 1700, Y = 900, W = 520, H = 430, MARGIN = AST_TAPS };
     uint8_t *large = noise_pixels((size_t)WIDTH * HEIGHT, 12), *small = malloc((size_t)W * H), shown[SIDE * SIDE];

@@ -1,4 +1,5 @@
-/* The quasi-random walk as a whole: each particle by itself is Gaussian, all together lie more evenly than chance would have them. */
+/* The quasi-random walk as a whole: each particle by itself is Gaussian, all together lie more evenly than chance would have
+ * them. */
 #include "particles.h"
 
 #include <math.h>
@@ -43,8 +44,8 @@ static void walk(int draws, int count, struct ast_random *random) {
     }
 }
 
-/* The start is random, so a single particle has the walk's own distribution, in its axes together: over many frames it fills a grid of
- * 5 x 5 x 5 cells of equal probability as independent draws do. */
+/* The start is random, so a single particle has the walk's own distribution, in its axes together: over many frames it fills a grid
+ * of 5 x 5 x 5 cells of equal probability as independent draws do. */
 static void test_each_particle_is_gaussian(void) {
     enum { FRAMES = 20000, COUNT = 40, CELLS = 5 };
     static const int watched[] = {0, 1, 17, COUNT - 1};

@@ -106,7 +106,8 @@ static void on_fault(void) {
     board_exit(1);
 }
 
-/* The processor reads the first stack pointer and the entry from the start of memory; the rest is called by the number of its cause. */
+/* The processor reads the first stack pointer and the entry from the start of memory; the rest is called by the number of its
+ * cause. */
 __attribute__((section(".vectors"), used)) static const struct {
     uint32_t *stack;
     void (*handler[15])(void);

@@ -23,8 +23,8 @@ enum camera_fault {
 void camera_start(int32_t scene_frame);
 /* The sensor's state for the pictures that begin after the next. */
 void camera_break(enum camera_fault fault);
-/* Waits for the next picture. The frame stays valid until the next call. Returns the number of its lines, CAMERA_HEIGHT unless it is
- * torn. */
+/* Waits for the next picture. The frame stays valid until the next call. Returns the number of its lines, CAMERA_HEIGHT unless it
+ * is torn. */
 int32_t camera_take(ast_frame *frame);
 
 #endif

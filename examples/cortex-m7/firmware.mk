@@ -5,7 +5,8 @@ ARM_PREFIX ?= arm-none-eabi-
 # emulator of Arm boards
 QEMU_ARM ?= qemu-system-arm
 
-# A variant: processor, FPU, the type of ast_real, emulated board. The processors with a single-precision FPU compute in float alone.
+# A variant: processor, FPU, the type of ast_real, emulated board. The processors with a single-precision FPU compute in float
+# alone.
 firmware_variants := m7-double m7-single m4-single
 m7-double_cpu := -mcpu=cortex-m7 -mfpu=fpv5-d16
 m7-double_real := double
@@ -88,8 +89,8 @@ FIRMWARE_STACK ?= 4096
 # most code and constants without save and restore and diagnostics, bytes
 FIRMWARE_CODE ?= 32768
 
-# What a program that tracks calls. What it does not (save and restore, looking inside, texts, the geometry alone, conversion of colours)
-# the linker leaves out.
+# What a program that tracks calls. What it does not (save and restore, looking inside, texts, the geometry alone, conversion of
+# colours) the linker leaves out.
 firmware_calls := ast_config_preset ast_mem_size ast_init ast_start ast_step ast_free
 firmware_lib_objects = $(call firmware_objects,m7-single,)
 

@@ -112,7 +112,8 @@ static void say_result(const ast_result *r) {
 
 /* ---- Tracking ---- */
 
-/* Steps through the camera's next pictures and writes each result. Returns the hash of all; *far counts frames without the object. */
+/* Steps through the camera's next pictures and writes each result. Returns the hash of all; *far counts frames without the
+ * object. */
 static uint32_t follow(ast_tracker *t, int32_t first_scene_frame, int frames, int *far) {
     uint32_t hash = 2166136261u;
     for (int f = 0; f < frames; f++) {
@@ -134,7 +135,8 @@ static uint32_t follow(ast_tracker *t, int32_t first_scene_frame, int frames, in
 
 /* ---- The sensor fails ---- */
 
-/* Whether the pictures repeat. To a tracker a frozen picture is a scene at rest, which it would learn by heart; so the program tells. */
+/* Whether the pictures repeat. To a tracker a frozen picture is a scene at rest, which it would learn by heart; so the program
+ * tells. */
 struct monitor {
     uint32_t hash;
     int equal; /* pictures in a row that are the one before */

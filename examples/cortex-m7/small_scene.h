@@ -1,5 +1,5 @@
-/* A small scene in whole numbers alone, so that every machine renders the same bytes: a textured thing that drifts and grows in front
- * of a textured ground, with a sensor's noise. */
+/* A small scene in whole numbers alone, so that every machine renders the same bytes: a textured thing that drifts and grows in
+ * front of a textured ground, with a sensor's noise. */
 #ifndef SMALL_SCENE_H
 #define SMALL_SCENE_H
 

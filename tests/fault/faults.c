@@ -1,6 +1,6 @@
-/* Faults on demand, linked in front of the command for tests: the k-th call of a kind fails, as AST_FAULT=KIND:K asks, and at the end
- * a line in the file AST_FAULT_REPORT says how many calls there were. Kinds: allocation, open, write, close, rename, read; "short:1"
- * makes every read and write move one byte, or as few as there may be.
+/* Faults on demand, linked in front of the command for tests: the k-th call of a kind fails, as AST_FAULT=KIND:K asks, and at the
+ * end a line in the file AST_FAULT_REPORT says how many calls there were. Kinds: allocation, open, write, close, rename, read;
+ * "short:1" makes every read and write move one byte, or as few as there may be.
  *
  * The linker sends the command's own calls here (--wrap). Allocations are taken over for the whole process, those of libjpeg and of
  * the C library included, but for a sanitizer's builds, whose allocator must stay: there, too, it is the command's own calls. */

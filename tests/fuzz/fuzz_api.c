@@ -1,6 +1,6 @@
 /* The whole interface, driven by the bytes: which configuration, which frames, strides and boxes, which calls in which order, with
- * which mistakes. A call that fails leaves the state as it was, one that does not gives numbers in their ranges, and nothing outside
- * the memory that was handed over is touched. */
+ * which mistakes. A call that fails leaves the state as it was, one that does not gives numbers in their ranges, and nothing
+ * outside the memory that was handed over is touched. */
 #include "small.h"
 
 enum { MOST_CALLS = 24, MOST_FRAMES = 4, MOST_MEMORY = 1 << 18, MOST_COST = 1 << 16, MOST_SAVED = 1 << 18 };

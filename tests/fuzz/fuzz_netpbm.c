@@ -1,5 +1,5 @@
-/* Hostile PGM and PPM files: any bytes give a picture or a reason, never more than the header allows, and the same with buffers that
- * an earlier picture left. */
+/* Hostile PGM and PPM files: any bytes give a picture or a reason, never more than the header allows, and the same with buffers
+ * that an earlier picture left. */
 #include "bytes.h"
 #include "image_read.h"
 

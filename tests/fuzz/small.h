@@ -7,8 +7,8 @@
 
 #include "bytes.h"
 
-/* With every part at work and steps of some microseconds. which: the paper's parts scored by Gram matrices, the same scored literally,
- * the robust preset's parts. */
+/* With every part at work and steps of some microseconds. which: the paper's parts scored by Gram matrices, the same scored
+ * literally, the robust preset's parts. */
 enum { SMALL_KINDS = 3 };
 static inline ast_config small_kind(int which) {
     ast_config cfg;

@@ -1,5 +1,5 @@
-/* A tracker that runs for ever, and two hundred that come and go: memory flat to the byte, numbers that stay numbers, and a table in
- * which a drift in processor time would show.
+/* A tracker that runs for ever, and two hundred that come and go: memory flat to the byte, numbers that stay numbers, and a table
+ * in which a drift in processor time would show.
  * usage: soak FRAMES */
 #define _GNU_SOURCE
 #include "support_allocation.h"
