@@ -113,7 +113,7 @@ def steps(source: "Source", frames: "Iterator[Frame]", tracker: Tracker, recorde
     rest = islice(frames, None if limit is None else limit - 1)
     total = min(filter(None, (source.count, limit)), default=None)
     try:
-        for frame in shown(rest, None if total is None else total - 1, "frame"):
+        for frame in shown(rest, None if total is None else total - 1, "frame", pause=0.1):
             before = time.perf_counter()
             result = tracker.update(frame)
             recorder.seconds += time.perf_counter() - before
