@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -163,7 +164,11 @@ def test_a_cluster_of_its_own_writes_parquet_and_tells_what_failed(sequences: Pa
 
 
 def test_no_scheduler_and_no_sequence_are_one_line(sequences: Path, tmp_path: Path) -> None:
-    done = fleet([tmp_path / "absent"], "--workers", 1)
+    with socket.socket() as another:
+        with suppress(OSError):  # taken by a real cluster, the port that Dask likes is as little free
+            another.bind(("127.0.0.1", 8787))
+            another.listen()
+        done = fleet([tmp_path / "absent"], "--workers", 1)
     assert done.returncode == 1
     assert done.stderr.splitlines() == [f"asttrack: {tmp_path}/absent: no such directory", "asttrack: no sequence was tracked"]
     bad = fleet([sequences], "--scheduler", "nonsense://127.0.0.1:1")

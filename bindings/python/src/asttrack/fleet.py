@@ -50,6 +50,7 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
         processes=True,
         host="127.0.0.1",
         dashboard_address=None,
+        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # there is an HTTP server even so: any port, without a warning
         silence_logs=logging.CRITICAL,
     )
     with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
