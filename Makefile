@@ -488,8 +488,12 @@ memcheck: unity ## the C tests under valgrind, with the builtin backend
 
 format: ## lay out the C sources
 	$(CLANG_FORMAT) -i $(c_files)
-format-check: ## fail when `make format` would change a file
+# clang-format leaves comments as they are, however long their lines.
+format-check: ## fail when `make format` would change a file, or a comment is too wide
 	$(CLANG_FORMAT) --dry-run -Werror $(c_files)
+	@awk 'length > 132 && (FILENAME ~ /[.][ch]$$/ || /^[ \t]*#/) { long = 1; print FILENAME ":" FNR ": " length " columns" } \
+	    END { if (long) print "lines of C and comments have 132 columns at most"; exit long }' \
+	    $(c_files) $(filter Makefile %.mk,$(MAKEFILE_LIST)) .ci/run
 
 # ---- Installing ----
 

@@ -7,14 +7,14 @@
 
 /* Rate of the running mean: about the last 20 trusted frames. */
 #define USUAL_RATE 0.05f
-/* Of the lasting mean, where it falls: the last 50 frames; at first a third of all there were, so that it begins as the usual one. An
- * object is never again as like its looks at the start as in the first frames, and that says nothing. */
+/* Of the lasting mean, where it falls: the last 50 frames; at first a third of all there were, so that it begins as the usual one.
+ * An object is never again as like its looks at the start as in the first frames, and that says nothing. */
 #define LASTING_RATE 0.02f
 #define EARLY_FRAMES 3.0f
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
-/* But an object whose likeness to the start is lastingly at least FAITHFUL does not change all of a sudden: when it falls below VANISHED of
- * what is known, something is in front of it, however sure the cloud is about that. */
+/* But an object whose likeness to the start is lastingly at least FAITHFUL does not change all of a sudden: when it falls below
+ * VANISHED of what is known, something is in front of it, however sure the cloud is about that. */
 #define FAITHFUL 0.5f
 #define VANISHED 0.35f
 /* Growth of the search a frame. */

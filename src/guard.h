@@ -2,8 +2,8 @@
  *
  * A bag that learns an occluder prefers it from then on, and nothing measured on the bag alone notices. So two resemblances of the
  * winner are compared with what they usually are: that to the object as it was given at the start, which cannot drift, and that to
- * the likest model of the bag, which knows the object's looks since. An object that turns keeps the second, one that comes back keeps
- * the first; a frame in which both fall is not learned from. */
+ * the likest model of the bag, which knows the object's looks since. An object that turns keeps the second, one that comes back
+ * keeps the first; a frame in which both fall is not learned from. */
 #ifndef AST_GUARD_H
 #define AST_GUARD_H
 
@@ -36,15 +36,15 @@ float ast_guard_likeness(const float *vector, const float *other, const float *o
 /* A winner's vector beside the start's (anchor) and the models' means, all about the origin. */
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
-/* A frame whose winner resembles so and whose cloud has this spread (object sizes). It is not trusted when its likeness to the start
- * falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud is undecided or nothing
- * like the object is left; cfg->lost_after such frames make the object lost, until likenesses of cfg->reacquire of the lasting and
- * cfg->recall of the usual. */
+/* A frame whose winner resembles so and whose cloud has this spread (object sizes). It is not trusted when its likeness to the
+ * start falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud is
+ * undecided or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of
+ * cfg->reacquire of the lasting and cfg->recall of the usual. */
 void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
                    const struct ast_resemblance *resemblance, float spread);
-/* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual, and with a
- * score of cfg->score_lost at least. What slowly covers an object, or what stands where it was, would else replace all that is known of
- * it, one frame hardly unlike the last. */
+/* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual, and
+ * with a score of cfg->score_lost at least. What slowly covers an object, or what stands where it was, would else replace all that
+ * is known of it, one frame hardly unlike the last. */
 int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance, float score);
 /* While lost, half of the particles go on following what was likeliest, since it may still be the object in a new guise; the other
  * half searches around the last trusted estimate. This gives the searchers their place, before the walk; */

@@ -43,8 +43,8 @@ void ast_cloud_shift(struct ast_cloud *cloud, float x, float y) {
     }
 }
 
-/* Three standard normals for particle after particle. The quasi-random ones are an additive recurrence in the unit cube, whose steps
- * are powers of the inverse of the root of r^4 = r + 1 (Roberts' R3 sequence), shifted by a random start, through the normal
+/* Three standard normals for particle after particle. The quasi-random ones are an additive recurrence in the unit cube, whose
+ * steps are powers of the inverse of the root of r^4 = r + 1 (Roberts' R3 sequence), shifted by a random start, through the normal
  * quantile. Kept in 32-bit fractions of a turn, which wrap without rounding. */
 struct draws {
     uint32_t at[3];

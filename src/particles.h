@@ -29,7 +29,8 @@ void ast_cloud_resample(const struct ast_cloud *from, struct ast_cloud *to, stru
 struct ast_state ast_state_within(struct ast_state state, const ast_config *cfg, const ast_frame *frame);
 /* Moves all particles by the same step, pixels. */
 void ast_cloud_shift(struct ast_cloud *cloud, float x, float y);
-/* Gaussian random walk: additive in x and y, multiplicative in scale; the centre is clamped to the frame, the scale to its limits. */
+/* Gaussian random walk: additive in x and y, multiplicative in scale; the centre is clamped to the frame, the scale to its
+ * limits. */
 void ast_cloud_diffuse(struct ast_cloud *cloud, const ast_config *cfg, const ast_frame *frame, struct ast_random *random);
 /* Root of the weighted variance of the centres, pixels. */
 float ast_cloud_spread(const struct ast_cloud *cloud);

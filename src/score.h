@@ -11,7 +11,8 @@
 #include "linalg.h"
 #include "metric.h"
 
-/* Candidates are scored in tiles of this many patches, one in each lane, so that memory does not grow with particles x patch length. */
+/* Candidates are scored in tiles of this many patches, one in each lane, so that memory does not grow with particles x patch
+ * length. */
 enum { AST_TILE = AST_LANES };
 
 /* What every candidate of a frame shares. Only the bag's lead columns and marks, the spare columns and the work are written. */

@@ -1,11 +1,12 @@
 /* The fast path: the same distances from inner products alone.
  *
- * All candidates of a frame share the history H = [h_1 .. h_p]. Let `reference` be its mean and Q an orthonormal basis of H about the
- * basis's origin (the mean for a centred basis, zero for a raw one), with H H' = Q diag(spectrum) Q' there. For a candidate patch c
- * let d = c - reference, q = Q'd, and e the unit vector along d - Q q, of length rho. Then in the coordinates [Q e]:
+ * All candidates of a frame share the history H = [h_1 .. h_p]. Let `reference` be its mean and Q an orthonormal basis of H about
+ * the basis's origin (the mean for a centred basis, zero for a raw one), with H H' = Q diag(spectrum) Q' there. For a candidate
+ * patch c let d = c - reference, q = Q'd, and e the unit vector along d - Q q, of length rho. Then in the coordinates [Q e]:
  *
- *   - the scatter matrix of the set [H c] is diag(spectrum, 0) + gamma v v', v = (q + Q'(reference - origin), rho), gamma = p / (p + 1)
- *     for a centred basis and 1 for a raw one. Its eigenvectors W give U_i = [Q e] W, its eigenvalues the squared singular values;
+ *   - the scatter matrix of the set [H c] is diag(spectrum, 0) + gamma v v', v = (q + Q'(reference - origin), rho),
+ *     gamma = p / (p + 1) for a centred basis and 1 for a raw one. Its eigenvectors W give U_i = [Q e] W, its
+ *     eigenvalues the squared singular values;
  *   - U_i'U_j = W' [Q e]'U_j, where Q'U_j is shared by the frame and e'U_j = (d'U_j - q'Q'U_j) / rho;
  *   - mu_i = reference + d / (p + 1), which gives the Mahalanobis term in the same inner products.
  *
@@ -15,8 +16,9 @@
  * difference, single precision is enough for it. Unlike the Gram matrix of the set, the history enters through its own singular
  * values, not through their squares minus rounding.
  *
- * Candidates are taken AST_LANES at a time, one in each lane (score_kernel.h): what is done here for one is done there for all. What
- * has not changed since the last frame is not computed again: inner products of the background with itself and with the models. */
+ * Candidates are taken AST_LANES at a time, one in each lane (score_kernel.h): what is done here for one is done there for all.
+ * What has not changed since the last frame is not computed again: inner products of the background with itself and with the
+ * models. */
 #include <stddef.h>
 #include <string.h>
 
@@ -26,7 +28,8 @@
 #include "subspace.h"
 #include "vector.h"
 
-/* Below this fraction of |d|^2, rho^2 = |d|^2 - |q|^2 has lost too many digits, and the residual is computed from its definition. */
+/* Below this fraction of |d|^2, rho^2 = |d|^2 - |q|^2 has lost too many digits, and the residual is computed from its
+ * definition. */
 #define RESIDUAL_TOLERANCE ((ast_real)1e-1)
 
 /* Columns in front of the bag's: reference, Q_1 .. Q_P, and with a background its mean m_b and its vectors. */
@@ -175,7 +178,8 @@ static void adapt_history(struct ast_gram *s, const struct ast_scene *scene, int
     }
 }
 
-/* Solves L x = v in place for the Cholesky factor of a model's basis: inner products with U_j become those with its orthonormal form. */
+/* Solves L x = v in place for the Cholesky factor of a model's basis: inner products with U_j become those with its orthonormal
+ * form. */
 static void orthonormalise(const ast_real *factor, int n, int rank, float *v) {
     for (int b = 0; b < rank; b++) {
         ast_real sum = (ast_real)v[b];
@@ -215,9 +219,9 @@ static void keep_products(struct ast_gram *s, const struct ast_scene *scene, int
         s->kept[(size_t)(z - mean) * s->columns + (size_t)column] = products[z * AST_LANES + l];
 }
 
-/* Inner products of reference and Q, which change every frame, with all columns; and those of the background with all columns, where
- * one of the two was changed. By the library's own product whatever the backend, whose bits do not depend on what else is computed with
- * it: a restored tracker, which computes all anew, finds the same. */
+/* Inner products of reference and Q, which change every frame, with all columns; and those of the background with all columns,
+ * where one of the two was changed. By the library's own product whatever the backend, whose bits do not depend on what else is
+ * computed with it: a restored tracker, which computes all anew, finds the same. */
 static void update_products(struct ast_gram *s, struct ast_gram_tile *t, const struct ast_scene *scene, int columns) {
     struct ast_bag *bag = scene->bag;
     const int always = background_mean(scene->cfg);
@@ -284,8 +288,8 @@ static int prepare(union ast_scratch *scratch, union ast_tile_scratch *own, cons
     return 0;
 }
 
-/* Replaces d by what Q does not explain of it, taken away twice, since Q is orthonormal to single precision only; the lane's q receives the
- * coordinates. Returns the squared length of what is left. */
+/* Replaces d by what Q does not explain of it, taken away twice, since Q is orthonormal to single precision only; the lane's q
+ * receives the coordinates. Returns the squared length of what is left. */
 static ast_real residual_of(const struct ast_gram *s, const struct ast_scene *scene, float *d, ast_real *q) {
     enum { PASSES = 2 };
     ast_real *residual = scene->work, rest = 0;
@@ -323,8 +327,8 @@ static void set_apart(const struct ast_gram *s, const struct ast_scene *scene, s
     }
 }
 
-/* In the learned metric: what rounding leaves is no direction, and what is far from the background's mean m_b is the likelier to be the
- * object. */
+/* In the learned metric: what rounding leaves is no direction, and what is far from the background's mean m_b is the likelier to be
+ * the object. */
 static void meet_background(const struct ast_gram *s, const struct ast_scene *scene, struct ast_gram_tile *t) {
     const float *reference = t->inner, *mean = t->inner + (size_t)background_mean(scene->cfg) * AST_LANES;
     t->beside = t->inner;

@@ -72,8 +72,8 @@ static void depart(float *x, size_t ld, int count, const float *origin, int n, a
 }
 #endif
 
-/* L^-1 applied to the lanes' vectors, in place; L is row-major, its diagonal inverted. Rows in fours, whose sums do not wait for each
- * other until the diagonal. */
+/* L^-1 applied to the lanes' vectors, in place; L is row-major, its diagonal inverted. Rows in fours, whose sums do not wait for
+ * each other until the diagonal. */
 static void solve(const float *restrict factor, int size, float *restrict vectors) {
     enum { ROWS = 4 };
     for (int r = 0; r < size; r += ROWS) {
@@ -107,7 +107,8 @@ static void project(const struct ast_gram *s, struct ast_gram_tile *t) {
     }
 }
 
-/* From t->q and t->rest: eigenvectors W of the sets' scatter matrices, the rank of their bases, and what every pair needs of them. */
+/* From t->q and t->rest: eigenvectors W of the sets' scatter matrices, the rank of their bases, and what every pair needs of
+ * them. */
 static void decompose(const struct ast_gram *s, struct ast_gram_tile *t) {
     const int r = s->rank, m = r + 1, n = s->size, present = n < m ? n : m;
     ast_real inverse[AST_LANES], norm[AST_LANES];
@@ -155,7 +156,8 @@ static void decompose(const struct ast_gram *s, struct ast_gram_tile *t) {
                 constant[l] += kept * along[l];
             }
         }
-        /* W_a'[Q e]'x = sum over l of W_al Q_l'x + W_ar (d'x - sum over l of q_l Q_l'x) / rho: the coefficients of Q_l'x and d'x. */
+        /* W_a'[Q e]'x = sum over l of W_al Q_l'x + W_ar (d'x - sum over l of q_l Q_l'x) / rho: the coefficients of Q_l'x and
+         * d'x. */
         ast_real *last = w + (size_t)r * AST_LANES;
         for (int l = 0; l < AST_LANES; l++) last[l] *= inverse[l];
         for (int k = 0; k < r; k++)
@@ -163,7 +165,8 @@ static void decompose(const struct ast_gram *s, struct ast_gram_tile *t) {
     }
 }
 
-/* along[l] = sum over k of W_ak (Q_k'x) + W_ar d'x for a column x, of which shared gives Q_k'x (in steps of `step`) and inner d'x. */
+/* along[l] = sum over k of W_ak (Q_k'x) + W_ar d'x for a column x, of which shared gives Q_k'x (in steps of `step`) and inner
+ * d'x. */
 static void along_candidate(const ast_real *restrict w, int rank, const float *restrict shared, size_t step,
                             const ast_real *restrict inner, ast_real *restrict along) {
     const ast_real *last = w + (size_t)rank * AST_LANES;
@@ -174,7 +177,8 @@ static void along_candidate(const ast_real *restrict w, int rank, const float *r
     }
 }
 
-/* Inner products of the lanes with a model's orthonormal basis from those with its basis as it is: v = L^-1 columns. factor may be NULL. */
+/* Inner products of the lanes with a model's orthonormal basis from those with its basis as it is: v = L^-1 columns. factor may be
+ * NULL. */
 static void orthonormal(const ast_real *factor, int n, int rank, const float *restrict columns, ast_real *restrict v) {
     for (int b = 0; b < rank; b++) {
         ast_real *to = v + b * AST_LANES;

@@ -36,8 +36,8 @@ static void desk_layout(struct ast_desk *desk, const struct ast_tracker *t, size
     d->work = ast_arena_take(arena, t->work_count, sizeof *d->work);
 }
 
-/* Floats from one vector to the next. Vectors a power of two apart would meet in the same few lines of a cache when a product reads many
- * of them side by side: a line more, and they do not. */
+/* Floats from one vector to the next. Vectors a power of two apart would meet in the same few lines of a cache when a product reads
+ * many of them side by side: a line more, and they do not. */
 static int stride_of(int dim) {
     enum { LINE = AST_ALIGNMENT / sizeof(float), CROWDED = 512 };
     const int stride = (dim + LINE - 1) / LINE * LINE;
@@ -148,8 +148,8 @@ static ast_box window_of(const struct ast_tracker *t, const struct ast_state *st
     return window;
 }
 
-/* Shows the part of a frame around centres between (left, top) and (right, bottom), with room for the object's box at this scale and
- * for its surroundings, and prepares the features there. */
+/* Shows the part of a frame around centres between (left, top) and (right, bottom), with room for the object's box at this scale
+ * and for its surroundings, and prepares the features there. */
 static void look(struct ast_tracker *t, const ast_frame *frame, float left, float top, float right, float bottom, float scale) {
     /* Boxes around a centre: half for the object, the rest for larger candidates and for background. */
     const float reach = t->cfg.background > 0 ? 1.25f : 0.75f;
@@ -201,7 +201,8 @@ static void refresh_background(struct ast_tracker *t, const ast_box *object) {
     }
 }
 
-/* Fits the subspace of a set into t->mean and t->basis. A raw basis starts from the background's mean where there is a background. */
+/* Fits the subspace of a set into t->mean and t->basis. A raw basis starts from the background's mean where there is a
+ * background. */
 static int fit_images(struct ast_tracker *t, const struct ast_images *images, const float *background_mean, int *rank) {
     const int failed =
         ast_subspace_of(t->la, images, t->cfg.basis == AST_BASIS_CENTRED, t->background.size > 0 ? background_mean : NULL,
