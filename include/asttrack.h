@@ -141,14 +141,17 @@ typedef struct ast_config {
 
     /* Particles (paper section 2.1) */
     int32_t particles; /* N, 1 .. AST_MAX_PARTICLES */
+    int32_t
+        shortlist; /* of them scored in full, those that an inner product finds likeliest; 0 or N: all (the paper's); needs a background */
     float walk_x;      /* standard deviation of the random walk in x, pixels a frame, 0 .. 1000 */
     float walk_y;      /* the same in y */
     float walk_scale;  /* the same for the natural logarithm of the scale, 0 .. 1 */
     int32_t draws;     /* AST_DRAWS_* */
     float velocity;    /* share of the smoothed velocity added to every particle, 0 (the paper's) .. 1 */
     int32_t incumbent; /* AST_YES: one particle stays on the last estimate */
-    float scale_min;   /* least scale, relative to the first box, 0.01 .. 1 */
-    float scale_max;   /* greatest scale, relative to the first box, 1 .. 100 */
+    float prior; /* standard deviation of the winner's place about the last one, in object sizes, 0 .. 100; 0: none (the paper's) */
+    float scale_min; /* least scale, relative to the first box, 0.01 .. 1 */
+    float scale_max; /* greatest scale, relative to the first box, 1 .. 100 */
 
     /* View: the reachable part of the frame, resampled once a frame to a fixed number of pixels; 0: features read the frame */
     int32_t view;        /* greatest side, pixels, 0 or 32 .. AST_MAX_VIEW */
@@ -305,7 +308,8 @@ typedef struct ast_particles {
     const float *weight;   /* sum 1 */
     int32_t count;         /* N */
     int32_t models;        /* columns of distance: models in the bag at the last step (1 before the bag has one) */
-    const float *distance; /* count x models, row-major: the last step's distances (paper eq. 2); NULL before the first step */
+    int32_t scored;        /* rows of distance: the first particles, of which the others weigh nothing; count without a shortlist */
+    const float *distance; /* scored x models, row-major: the last step's distances (paper eq. 2); NULL before the first step */
     ast_box reference;     /* x, y: centre of the last estimate; w, h: box size at scale 1 */
 } ast_particles;
 AST_API AST_CHECKED int ast_get_particles(const ast_tracker *t, ast_particles *out);
@@ -378,19 +382,20 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
  * is a tracker's block without a heap. patch_width and patch_height: 0 when patch_weight is 0; gradient_cells: 0 when
  * gradient_weight is 0. For the built-in linear algebra (LAPACK says only when it runs how much it needs) and AST_SCORING_GRAM.
  * Compile with the library's own AST_REAL and AST_LANES, if it was built with any. */
-#define AST_MEM_SIZE(particles, view, patch_width, patch_height, gradient_cells, history, basis_size, bag_size, background,        \
-                     threads)                                                                                                      \
-    AST_MEM_OF_((size_t)(particles), (size_t)(view), (size_t)(patch_width), (size_t)(patch_height), (size_t)(gradient_cells),      \
-                (size_t)(history), (size_t)(basis_size), (size_t)(bag_size), (size_t)(background), (size_t)(threads))
+#define AST_MEM_SIZE(particles, shortlist, view, patch_width, patch_height, gradient_cells, history, basis_size, bag_size,         \
+                     background, threads)                                                                                          \
+    AST_MEM_OF_((size_t)(particles), (size_t)(shortlist), (size_t)(view), (size_t)(patch_width), (size_t)(patch_height),           \
+                (size_t)(gradient_cells), (size_t)(history), (size_t)(basis_size), (size_t)(bag_size), (size_t)(background),       \
+                (size_t)(threads))
 
 /* The presets as they are. */
-#define AST_MEM_SIZE_PAPER AST_MEM_SIZE(600, 0, 32, 32, 0, 3, 3, 10, 0, 1)
-#define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 128, 16, 16, 12, 3, 2, 18, 40, 1)
-#define AST_MEM_SIZE_TINY AST_MEM_SIZE(92, 48, 16, 16, 0, 2, 1, 5, 8, 1)
-#define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 96, 12, 12, 8, 3, 2, 10, 32, 1)
+#define AST_MEM_SIZE_PAPER AST_MEM_SIZE(600, 0, 0, 32, 32, 0, 3, 3, 10, 0, 1)
+#define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 96, 128, 16, 16, 12, 3, 2, 18, 40, 1)
+#define AST_MEM_SIZE_TINY AST_MEM_SIZE(92, 0, 48, 16, 16, 0, 2, 1, 5, 8, 1)
+#define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 64, 96, 12, 12, 8, 3, 2, 10, 32, 1)
 
 /* What it is made of: no business of a program. Bytes of the library's own structs at most, which it checks as it is compiled; then
- * the arrays, each on a boundary of 64 bytes, in the order of ast_init. N, v, pw, ph, c, P, n, k, b, T: the fields above. */
+ * the arrays, each on a boundary of 64 bytes, in the order of ast_init. N, S, v, pw, ph, c, P, n, k, b, T: the fields above. */
 #define AST_MEM_TRACKER_ (768 + 80 * sizeof(void *))
 #define AST_MEM_DESK_ (64 + 40 * sizeof(void *))
 #define AST_MEM_CREW_ 512
@@ -441,14 +446,19 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
      AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * AST_MEM_MOST_(AST_MEM_LANES_, (P) + 1)) +                                              \
      ((T)-1) * AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * AST_MEM_LANES_) + AST_MEM_BYTES_((T)*AST_MEM_DESK_) +                        \
      ((T) > 1 ? AST_MEM_CREW_ + AST_MEM_BYTES_((T)*AST_MEM_WORKER_) : 0))
-#define AST_MEM_SUM_(N, v, pw, ph, c, dim, P, n, k, b, columns, T)                                                                 \
+#define AST_MEM_SCORED_(N, S) ((S) > 0 && (S) < (N) ? (S) : (N))
+#define AST_MEM_SUM_(N, S, v, pw, ph, c, dim, P, n, k, b, columns, T)                                                              \
     (63 + AST_MEM_BYTES_(AST_MEM_TRACKER_) + 8 * AST_MEM_FLOATS_(N) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (P)) +                \
      AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (columns)) + AST_MEM_BYTES_((k) * sizeof(int)) + AST_MEM_REALS_((k) * (n)) +           \
      AST_MEM_BYTES_(columns) + 2 * AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim)) +                                                         \
      AST_MEM_VIEW_(v, AST_MEM_LEAST_(v, 4 * AST_MEM_LANES_)) + AST_MEM_GRADIENT_(v, c) + AST_MEM_FRAME_(P, n, k, b, columns) +     \
-     AST_MEM_DESKS_(pw, ph, dim, P, n, b, columns, T) + AST_MEM_FLOATS_((N) * (k)) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (n)))
-#define AST_MEM_OF_(N, v, pw, ph, c, P, n, k, b, T)                                                                                \
-    AST_MEM_SUM_(N, v, pw, ph, c, AST_MEM_DIM_(pw, ph, c), P, n, k, b, AST_MEM_COLUMNS_(P, n, k, b), T)
+     AST_MEM_DESKS_(pw, ph, dim, P, n, b, columns, T) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (n)) + AST_MEM_FLOATS_(k) +         \
+     AST_MEM_REALS_(4 * (k)) + AST_MEM_FLOATS_(AST_MEM_MOST_((N), AST_MEM_SCORED_(N, S) * (k))) +                                  \
+     (AST_MEM_SCORED_(N, S) < (N)                                                                                                  \
+          ? AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim)) + AST_MEM_FLOATS_(N) + AST_MEM_FLOATS_(S) + AST_MEM_REALS_(b)                    \
+          : 0))
+#define AST_MEM_OF_(N, S, v, pw, ph, c, P, n, k, b, T)                                                                             \
+    AST_MEM_SUM_(N, S, v, pw, ph, c, AST_MEM_DIM_(pw, ph, c), P, n, k, b, AST_MEM_COLUMNS_(P, n, k, b), T)
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,7 @@ void ast_bag_layout(struct ast_bag *bag, int dim, int stride, int lead, int n, i
     bag->columns = ast_arena_take(arena, (size_t)stride * capacity_columns(bag), sizeof *bag->columns);
     bag->rank = ast_arena_take(arena, (size_t)capacity, sizeof *bag->rank);
     bag->basis_mean = ast_arena_take(arena, (size_t)capacity * (size_t)n, sizeof *bag->basis_mean);
+    bag->say = ast_arena_take(arena, (size_t)capacity, sizeof *bag->say);
     bag->changed = ast_arena_take(arena, capacity_columns(bag), sizeof *bag->changed);
     ast_bag_clear(bag);
 }
@@ -56,6 +57,7 @@ void ast_bag_add(struct ast_bag *bag, const float *mean, const float *basis, int
         memcpy(ast_bag_basis(bag, slot) + (size_t)l * (size_t)bag->stride, basis + (size_t)l * (size_t)bag->stride, bytes);
     memcpy(ast_bag_mean(bag, slot), mean, bytes);
     bag->rank[slot] = rank;
+    bag->say[slot] = 0.0f;
     if (bag->count < bag->capacity)
         bag->count++;
     else

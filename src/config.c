@@ -32,12 +32,14 @@ static const char *const scoring_names[] = {"gram", "literal", NULL};
 /* One row a field, in declaration order: the check, the saved state, the command's --set and the bindings all read this table. */
 static const ast_config_field fields[] = {
     INT(particles, 1, AST_MAX_PARTICLES),
+    INT(shortlist, 0, AST_MAX_PARTICLES),
     REAL(walk_x, 0.0f, 1000.0f),
     REAL(walk_y, 0.0f, 1000.0f),
     REAL(walk_scale, 0.0f, 1.0f),
     CHOICE(draws, draws_names),
     REAL(velocity, 0.0f, 1.0f),
     CHOICE(incumbent, switch_names),
+    REAL(prior, 0.0f, 100.0f),
     REAL(scale_min, 0.01f, 1.0f),
     REAL(scale_max, 1.0f, 100.0f),
     INT(view, 0, AST_MAX_VIEW),
@@ -86,12 +88,14 @@ const ast_config_field *ast_config_fields(int32_t *count) {
 static const ast_config paper = {
     .struct_size = sizeof(ast_config),
     .particles = 600,
+    .shortlist = 0,
     .walk_x = 8.0f,
     .walk_y = 5.0f,
     .walk_scale = 0.01f,
     .draws = AST_DRAWS_RANDOM,
     .velocity = 0.0f,
     .incumbent = AST_NO,
+    .prior = 0.0f,
     .scale_min = 0.3f,
     .scale_max = 4.0f,
     .view = 0,
@@ -134,12 +138,14 @@ static const ast_config paper = {
 static const ast_config robust = {
     .struct_size = sizeof(ast_config),
     .particles = 350,
+    .shortlist = 96,
     .walk_x = 8.0f,
     .walk_y = 8.0f,
     .walk_scale = 0.01f,
     .draws = AST_DRAWS_QUASI,
     .velocity = 0.5f,
     .incumbent = AST_YES,
+    .prior = 0.5f,
     .scale_min = 0.3f,
     .scale_max = 4.0f,
     .view = 128,
@@ -162,7 +168,7 @@ static const ast_config robust = {
     .ridge = 0.1f,
     .background_ratio = 1.0f,
     .alpha = 10.0f,
-    .sigma = 0.1f,
+    .sigma = 0.15f,
     .likelihood = AST_LIKELIHOOD_SCALED,
     .vote = AST_VOTE_CONTRAST,
     .scoring = AST_SCORING_GRAM,
@@ -186,6 +192,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_TINY: /* grey patches alone, with the robust one's decisions: docs/firmware.md */
         memcpy(cfg, &robust, sizeof *cfg);
         cfg->particles = 92;
+        cfg->shortlist = 0;
         cfg->walk_y = 3.0f;
         cfg->view = 48; /* patches from the whole frame would take most of the time */
         cfg->view_object = 16;
@@ -202,6 +209,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
         memcpy(cfg, &robust, sizeof *cfg);
         cfg->particles = 200;
+        cfg->shortlist = 64;
         cfg->view = 96;
         cfg->patch_width = 12;
         cfg->patch_height = 12;
@@ -249,6 +257,7 @@ int ast_config_check(const ast_config *cfg, const char **field) {
 #ifdef AST_NO_LITERAL
     if (offender == NULL && cfg->scoring == AST_SCORING_LITERAL) offender = "scoring";
 #endif
+    if (offender == NULL && cfg->shortlist > 0 && cfg->background == 0) offender = "shortlist";
     if (offender == NULL && cfg->score_lost > cfg->score_uncertain) offender = "score_lost";
     if (offender == NULL) return AST_OK;
     if (field != NULL) *field = offender;

@@ -17,6 +17,10 @@
  * VANISHED of what is known, something is in front of it, however sure the cloud is about that. */
 #define FAITHFUL 0.5f
 #define VANISHED 0.35f
+/* Likenesses are relative to what they were, and a bag that has learned something else finds it familiar; the score is not. When
+ * its mean over about the last ten frames falls below FADED, what is followed is not the object, however familiar it is. */
+#define STEADY_RATE 0.1f
+#define FADED 0.2f
 /* Growth of the search a frame. */
 #define SEARCH_GROWTH 1.3f
 /* Frames over which it may grow: 1.3^40 covers any frame from a walk of a pixel. */
@@ -25,6 +29,7 @@
 void ast_guard_clear(struct ast_guard *guard, const struct ast_state *start) {
     guard->usual.start = guard->usual.known = 0.0f;
     guard->lasting = guard->usual;
+    guard->steady = 1.0f;
     guard->trusted = 0;
     guard->low = 0;
     guard->lost = 0;
@@ -66,24 +71,29 @@ static float lasting_rate(int32_t frames) {
 }
 
 void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
-                   const struct ast_resemblance *resemblance, float spread) {
+                   const struct ast_resemblance *resemblance, float spread, float score) {
     if (guard->trusted == 0) guard->usual = guard->lasting = *resemblance;
+    guard->steady += STEADY_RATE * (score - guard->steady);
     const float start = guard->lasting.start;
+    const int likely = score >= cfg->score_lost, faded = !guard->lost && guard->steady < FADED;
     const int unknown = resemblance->known < cfg->recall * guard->usual.known;
     const int vanished = start > FAITHFUL && resemblance->known < VANISHED * guard->lasting.known;
-    const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * start
+    const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * start || !likely
                                      : unknown && resemblance->start < cfg->guard * start && (spread > DECIDED_SPREAD || vanished);
-    if (doubtful) {
+    if (doubtful || faded) {
         if (guard->low < AST_GUARD_LONG) guard->low++;
-        if (guard->low >= cfg->lost_after) guard->lost = 1;
-    } else {
-        if (guard->trusted < AST_GUARD_LONG) guard->trusted++;
+        if (guard->low >= cfg->lost_after || faded) guard->lost = 1;
+        return;
+    }
+    if (guard->trusted < AST_GUARD_LONG) guard->trusted++;
+    if (likely) {
         average(&guard->usual, resemblance, USUAL_RATE);
         average(&guard->lasting, resemblance, lasting_rate(guard->trusted));
-        guard->low = 0;
-        guard->lost = 0;
-        guard->good = *estimate;
     }
+    if (guard->lost) guard->steady = 1.0f; /* found again, it has its time to be sure of */
+    guard->low = 0;
+    guard->lost = 0;
+    guard->good = *estimate;
 }
 
 int ast_guard_selects(const struct ast_guard *guard, const ast_config *cfg, const struct ast_resemblance *resemblance,

@@ -23,6 +23,7 @@ struct ast_resemblance {
 struct ast_guard {
     struct ast_resemblance usual;   /* running means over trusted frames; start 0 before the first */
     struct ast_resemblance lasting; /* the same, but slow to fall: what covers the object little by little does not become usual */
+    float steady;                   /* running mean of the scores, 0 .. 1 */
     int32_t trusted;                /* frames that these are means of, at most AST_GUARD_LONG */
     int32_t low;                    /* consecutive frames that were not trusted, at most AST_GUARD_LONG */
     int32_t lost;                   /* 1: following and searching, without learning */
@@ -36,12 +37,13 @@ float ast_guard_likeness(const float *vector, const float *other, const float *o
 /* A winner's vector beside the start's (anchor) and the models' means, all about the origin. */
 struct ast_resemblance ast_guard_resemblance(const float *vector, const float *anchor, const struct ast_bag *bag,
                                              const float *origin);
-/* A frame whose winner resembles so and whose cloud has this spread (object sizes). It is not trusted when its likeness to the
- * start falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the cloud is
- * undecided or nothing like the object is left; cfg->lost_after such frames make the object lost, until likenesses of
- * cfg->reacquire of the lasting and cfg->recall of the usual. */
+/* A frame whose winner resembles so, whose cloud has this spread (object sizes), and which scores so. It is not trusted when its
+ * likeness to the start falls below cfg->guard of the lasting and that to what is known below cfg->recall of the usual, while the
+ * cloud is undecided or nothing like the object is left. cfg->lost_after such frames make the object lost, or scores that stay next
+ * to nothing, until likenesses of cfg->reacquire of the lasting and cfg->recall of the usual, and a score of cfg->score_lost. The
+ * means are those of trusted frames with such a score. */
 void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct ast_state *estimate,
-                   const struct ast_resemblance *resemblance, float spread);
+                   const struct ast_resemblance *resemblance, float spread, float score);
 /* Whether a frame's model may take another's place in a full bag: one more like the start than cfg->selective of the usual, and
  * with a score of cfg->score_lost at least. What slowly covers an object, or what stands where it was, would else replace all that
  * is known of it, one frame hardly unlike the last. */

@@ -20,6 +20,7 @@ int ast_get_particles(const ast_tracker *t, ast_particles *out) {
     out->weight = t->cloud.weight;
     out->count = t->cloud.count;
     out->models = t->models;
+    out->scored = t->models > 0 ? t->scored : 0;
     out->distance = t->models > 0 ? t->distance : NULL;
     out->reference.x = t->estimate.x;
     out->reference.y = t->estimate.y;

@@ -99,6 +99,15 @@ void ast_metric_apply(const struct ast_metric *m, const struct ast_kernels *kern
     }
 }
 
+void ast_metric_back(const struct ast_metric *m, ast_real *t) {
+    const int b = m->size;
+    for (int r = b - 1; r >= 0; r--) {
+        ast_real sum = t[r];
+        for (int c = r + 1; c < b; c++) sum -= (ast_real)m->factor[(size_t)c * (size_t)b + (size_t)r] * t[c];
+        t[r] = sum * (ast_real)m->factor[(size_t)r * (size_t)b + (size_t)r];
+    }
+}
+
 float *ast_metric_known(const struct ast_metric *m, int column) {
     return m->known + (size_t)(column <= m->mean ? column : column - m->size) * (size_t)m->size;
 }

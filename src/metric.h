@@ -31,6 +31,8 @@ void ast_metric_prepare(struct ast_metric *m, const struct ast_kernels *kernels,
  * too. */
 void ast_metric_apply(const struct ast_metric *m, const struct ast_kernels *kernels, int columns, float *inner, ast_real *square,
                       float *fresh);
+/* y = L'^-1 t (size), in place: what M takes away from a vector with this t is Zc'y. */
+void ast_metric_back(const struct ast_metric *m, ast_real *t);
 /* t of a column that is none of the background's vectors. */
 float *ast_metric_known(const struct ast_metric *m, int column);
 /* t(x)'t(y) for two of them. */

@@ -95,8 +95,9 @@ struct ast_gram {
     ast_real *factor;          /* Cholesky factors of the bases' inner products: k x n x n; unused in the identity */
     ast_real origin_square;    /* |reference - m_b|^2 */
     struct ast_metric metric;
-    float *shared; /* inner products of [reference Q] with the bag's columns: (P + 1) x columns, row-major */
-    float *kept;   /* the same of the background's mean and vectors, kept from frame to frame: (1 + background) x columns */
+    ast_real *taken; /* what the metric takes away of an aim: background; NULL without a shortlist */
+    float *shared;   /* inner products of [reference Q] with the bag's columns: (P + 1) x columns, row-major */
+    float *kept;     /* the same of the background's mean and vectors, kept from frame to frame: (1 + background) x columns */
 };
 
 /* Of a frame: written while it is prepared, then read by all tiles. */
@@ -119,6 +120,9 @@ struct ast_scoring {
                         struct ast_arena *arena);
     /* Once a frame, then for each tile. 0, or the backend's failure. */
     int (*prepare)(union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene);
+    /* Once the frame is prepared: the direction (dim floats) along which a patch comes nearer to the models, each of them with its say
+     * (bag->count, >= 0), to first order. Needs a background; NULL where that is not scored. */
+    void (*aim)(const union ast_scratch *scratch, const struct ast_scene *scene, const float *say, float *direction);
     /* patches: count <= AST_TILE columns of the bag's stride, destroyed. distance: count x bag->count, row-major. */
     int (*tile)(const union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene, float *patches,
                 int count, float *distance);

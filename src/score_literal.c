@@ -102,4 +102,4 @@ static int tile(const union ast_scratch *scratch, union ast_tile_scratch *own, c
     return 0;
 }
 
-const struct ast_scoring ast_scoring_literal = {lead, layout, tile_layout, prepare, tile};
+const struct ast_scoring ast_scoring_literal = {lead, layout, tile_layout, prepare, NULL, tile};

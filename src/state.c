@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define FORMAT_VERSION 3u
+#define FORMAT_VERSION 4u
 #define SHARE_LIMIT 1.0001f /* of a weight or a likeness: 1 and its rounding */
 #define POSITION_LIMIT 1e6f /* pixels: beyond any centre that a legal start or step can give */
 #define VALUE_LIMIT 1e6f    /* beyond any element of a vector or a basis, which weights keep below 100; distances stay finite */
@@ -102,6 +102,7 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
     code_float(c, &t->guard.usual.known, -SHARE_LIMIT, SHARE_LIMIT);
     code_float(c, &t->guard.lasting.start, -SHARE_LIMIT, SHARE_LIMIT);
     code_float(c, &t->guard.lasting.known, -SHARE_LIMIT, SHARE_LIMIT);
+    code_float(c, &t->guard.steady, 0.0f, SHARE_LIMIT);
     code_int32(c, &t->guard.trusted, 0, AST_GUARD_LONG);
     code_int32(c, &t->guard.low, 0, AST_GUARD_LONG);
     code_int32(c, &t->guard.lost, 0, 1);
@@ -126,6 +127,7 @@ static void visit_state(struct codec *c, struct ast_tracker *t) {
         int rank = in_use ? t->bag.rank[slot] : 0;
         code_int(c, &rank, 0, t->bag.n);
         if (c->mode == CODEC_READ) t->bag.rank[slot] = rank;
+        code_floats(c, &t->bag.say[slot], 1, 0.0f, SHARE_LIMIT, in_use);
         for (int l = 0; l < t->bag.n; l++)
             code_floats(c, ast_bag_basis(&t->bag, slot) + (size_t)l * (size_t)t->stride, dim, -value, value, in_use);
         code_floats(c, ast_bag_mean(&t->bag, slot), dim, -value, value, in_use);
@@ -172,7 +174,7 @@ size_t ast_save_size(const ast_config *cfg) {
     if (ast_config_check(cfg, NULL) != AST_OK) return 0;
     const size_t dim = (size_t)ast_features_length(cfg), k = (size_t)cfg->bag_size;
     const size_t background = cfg->background > 0 ? (size_t)cfg->background + 1 : 0;
-    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 10 + 4 * 4 + 4 * k; /* what visit_state codes one by one */
+    const size_t scalars = 4 * 9 + 8 + 4 * 2 + 4 * 11 + 4 * 4 + 8 * k; /* what visit_state codes one by one */
     const size_t vectors = (size_t)cfg->history + k * ((size_t)cfg->basis_size + 1) + 1 + background;
     struct codec c = {.mode = CODEC_COUNT, .at = HEADER};
     visit_config(&c, cfg);

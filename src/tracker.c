@@ -7,8 +7,9 @@
 #endif
 
 #include "backend.h"
-#include "decision.h"
 #include "frame.h"
+#include "product.h"
+#include "shortlist.h"
 #include "subspace.h"
 
 /* ---- Memory ---- */
@@ -78,7 +79,15 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     for (int w = 0; w < cfg->threads; w++)
         desk_layout(t->desk != NULL ? &t->desk[w] : NULL, t, w == 0 && given > AST_TILE ? given : (size_t)AST_TILE, arena);
     t->workers = ast_workers_layout(cfg->threads, arena);
-    t->distance = ast_arena_take(arena, (size_t)cfg->particles * (size_t)cfg->bag_size, sizeof *t->distance);
+    const size_t particles = (size_t)cfg->particles, scored = (size_t)ast_shortlist_length(cfg);
+    const size_t distances = scored * (size_t)cfg->bag_size; /* until there is a bag all particles have one each */
+    t->distance = ast_arena_take(arena, distances > particles ? distances : particles, sizeof *t->distance);
+    t->voice = ast_arena_take(arena, (size_t)cfg->bag_size, sizeof *t->voice);
+    if (scored < particles) {
+        t->direction = ast_arena_take(arena, stride, sizeof *t->direction);
+        t->promise = ast_arena_take(arena, particles, sizeof *t->promise);
+        t->heap = ast_arena_take(arena, scored, sizeof *t->heap);
+    }
     t->mean = ast_arena_take(arena, stride, sizeof *t->mean);
     t->basis = ast_arena_take(arena, stride * (size_t)cfg->basis_size, sizeof *t->basis);
 }
@@ -312,6 +321,10 @@ static void distances_to_mean(struct ast_tracker *t, const float *mean, const fl
     }
 }
 
+static int parts_of(int particles) {
+    return (particles + AST_TILE - 1) / AST_TILE;
+}
+
 /* What the parts of scoring a frame's candidates share. */
 struct round {
     struct ast_tracker *t;
@@ -320,19 +333,33 @@ struct round {
     int models;
 };
 
-static int score_part(void *shared, int worker, int part) {
-    const struct round *round = (const struct round *)shared;
-    struct ast_tracker *t = round->t;
-    struct ast_desk *desk = &t->desk[worker];
-    const int first = part * AST_TILE, rest = t->proposal.count - first, count = rest < AST_TILE ? rest : AST_TILE;
-    float *distance = t->distance + (size_t)first * (size_t)round->models;
-    struct ast_scene scene = round->scene;
-    scene.work = desk->work;
-    for (int i = 0; i < count; i++) {
+/* Puts the vectors of a tile of particles on the desk, of the first `count` of all. Returns how many they are. */
+static int describe_tile(struct ast_desk *desk, const struct ast_tracker *t, int first, int count) {
+    const int used = count - first < AST_TILE ? count - first : AST_TILE;
+    for (int i = 0; i < used; i++) {
         const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
         const ast_box window = window_of(t, &state);
         describe_at(desk, t, &window, desk->tile + (size_t)i * (size_t)t->stride);
     }
+    return used;
+}
+
+static int promise_part(void *shared, int worker, int part) {
+    const struct round *round = (const struct round *)shared;
+    const struct ast_tracker *t = round->t;
+    const int first = part * AST_TILE, count = describe_tile(&t->desk[worker], t, first, t->proposal.count);
+    ast_product(count, 1, t->dim, t->desk[worker].tile, t->stride, t->direction, t->stride, t->promise + first, AST_LANES);
+    return 0;
+}
+
+static int score_part(void *shared, int worker, int part) {
+    const struct round *round = (const struct round *)shared;
+    struct ast_tracker *t = round->t;
+    struct ast_desk *desk = &t->desk[worker];
+    const int first = part * AST_TILE, count = describe_tile(desk, t, first, t->scored);
+    float *distance = t->distance + (size_t)first * (size_t)round->models;
+    struct ast_scene scene = round->scene;
+    scene.work = desk->work;
     if (t->bag.count > 0) return t->scoring->tile(&t->scoring_scratch, &desk->scoring, &scene, desk->tile, count, distance);
     distances_to_mean(t, t->mean, desk->tile, count, distance);
     return 0;
@@ -369,7 +396,18 @@ static int prepare_part(void *shared, int worker, int part) {
     return 0;
 }
 
-/* Distances of all proposed particles to all models, tile by tile. */
+/* Brings the particles that are worth to be scored in full to the front of the proposal. Until there is a bag, all are. */
+static void shortlist(struct ast_tracker *t, struct round *round) {
+    const struct ast_task promises = {promise_part, round, parts_of(t->proposal.count), 1};
+    const int wanted = ast_shortlist_length(&t->cfg);
+    t->scored = t->bag.count > 0 ? wanted : t->proposal.count;
+    if (t->scored == t->proposal.count) return;
+    t->scoring->aim(&t->scoring_scratch, &round->scene, t->bag.say, t->direction);
+    (void)ast_workers_share(t->workers, &promises); /* nothing in it can fail */
+    ast_shortlist(&t->proposal, t->promise, wanted, t->heap);
+}
+
+/* Distances of the proposed particles to all models, tile by tile. */
 static int score_particles(struct ast_tracker *t, const ast_frame *frame, int models) {
     struct round round = {
         t,
@@ -377,8 +415,9 @@ static int score_particles(struct ast_tracker *t, const ast_frame *frame, int mo
         {&t->cfg, t->la, t->kernels, &t->history, &t->bag, t->background.size, t->desk->tile, t->desk->work, t->work_count},
         models};
     const struct ast_task preparation = {prepare_part, &round, 2, 1};
-    const struct ast_task tiles = {score_part, &round, (t->proposal.count + AST_TILE - 1) / AST_TILE, 0};
     if (ast_workers_share(t->workers, &preparation) != 0) return AST_E_BACKEND;
+    shortlist(t, &round);
+    const struct ast_task tiles = {score_part, &round, parts_of(t->scored), 0};
     return ast_workers_share(t->workers, &tiles) != 0 ? AST_E_BACKEND : AST_OK;
 }
 
@@ -391,6 +430,15 @@ static void propose(struct ast_tracker *t, const ast_frame *frame, struct ast_ra
     ast_cloud_diffuse(&t->proposal, &t->cfg, frame, random);
     ast_guard_widen(&t->guard, &t->cfg, frame, size, &t->proposal);
     if (t->cfg.incumbent) ast_cloud_set(&t->proposal, 0, ast_state_within(t->estimate, &t->cfg, frame));
+}
+
+/* Where the winner is expected: about where the last one moves to. An object that is lost may be anywhere. */
+static struct ast_expectation expectation(const struct ast_tracker *t) {
+    const float size = ast_sqrtf(t->box_width * t->box_height) * t->estimate.scale;
+    const struct ast_expectation expected = {t->estimate.x + t->cfg.velocity * t->velocity_x,
+                                             t->estimate.y + t->cfg.velocity * t->velocity_y,
+                                             t->guard.lost ? 0.0f : t->cfg.prior * size};
+    return expected;
 }
 
 static void copy_cloud(struct ast_cloud *to, const struct ast_cloud *from) {
@@ -416,7 +464,10 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     t->models = 0; /* until the distances are whole again */
     error = score_particles(t, frame, models);
     if (error != AST_OK) return error;
-    const int best = ast_decide(t->distance, t->proposal.count, models, &t->cfg, t->proposal.weight);
+    const struct ast_expectation expected = expectation(t);
+    ast_weigh(t->distance, t->scored, models, &t->cfg, t->proposal.weight, t->voice);
+    for (int i = t->scored; i < t->proposal.count; i++) t->proposal.weight[i] = 0.0f;
+    const int best = ast_winner(&t->proposal, t->scored, &expected);
     const struct ast_state found = {t->proposal.x[best], t->proposal.y[best], t->proposal.scale[best]};
     const ast_box found_box = window_of(t, &found);
     float nearest = t->distance[(size_t)best * (size_t)models];
@@ -436,9 +487,9 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
         const struct ast_resemblance resemblance =
             ast_guard_resemblance(vector, t->anchor, &t->bag, t->background.size > 0 ? t->background.mean : NULL);
         const float spread = ast_cloud_spread(&t->proposal) / ast_sqrtf(found_box.w * found_box.h);
-        ast_guard_see(&guard, &t->cfg, &found, &resemblance, spread);
         const struct ast_evidence evidence = {resemblance.start, spread, ast_frame_share(frame, &found_box)};
         score = ast_confidence_probability(&evidence);
+        ast_guard_see(&guard, &t->cfg, &found, &resemblance, spread, score);
         selected = t->bag.count < t->bag.capacity || ast_guard_selects(&t->guard, &t->cfg, &resemblance, score);
         confidence = t->confidence;
         confidence.status = ast_guard_status(&guard, &t->cfg, score);
@@ -464,6 +515,7 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     t->guard = guard;
     t->models = models;
     copy_cloud(&t->cloud, &t->proposal);
+    if (t->bag.count > 0) ast_attribute(t->distance + (size_t)best * (size_t)models, t->voice, models, t->bag.say);
     t->since_model = model_due ? 0 : t->since_model + 1;
     if (trusted) {
         ast_history_push(&t->history, vector);

@@ -6,6 +6,7 @@
 #include "background.h"
 #include "bag.h"
 #include "confidence.h"
+#include "decision.h"
 #include "feature.h"
 #include "guard.h"
 #include "history.h"
@@ -53,12 +54,17 @@ struct ast_tracker {
     struct ast_view view;
     struct ast_features features;
     union ast_scratch scoring_scratch;
-    struct ast_desk *desk; /* one for each worker; all but the tiles is done at the first */
-    float *distance;       /* particles x models of the last step */
-    int models;            /* columns of distance; 0 before the first step */
-    float *mean;           /* of a set being fitted: dim */
-    float *basis;          /* of it: basis_size columns */
-    size_t work_count;     /* elements of a desk's work */
+    struct ast_desk *desk;   /* one for each worker; all but the tiles is done at the first */
+    float *distance;         /* scored particles x models of the last step */
+    int models;              /* columns of distance; 0 before the first step */
+    int scored;              /* rows of it */
+    struct ast_voice *voice; /* what each model said at the last step: bag_size */
+    float *direction;        /* in which a patch comes nearer to the models: dim; NULL without a shortlist, as the next two */
+    float *promise;          /* along it, of each particle */
+    float *heap;             /* to choose among them: shortlist */
+    float *mean;             /* of a set being fitted: dim */
+    float *basis;            /* of it: basis_size columns */
+    size_t work_count;       /* elements of a desk's work */
     struct ast_workers *workers;
 };
 

@@ -21,7 +21,7 @@ static int within(float v, int low, int high) {
 }
 
 void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box *region, const ast_box *object) {
-    const float size = ast_sqrtf(object->w * object->h), longest = region->w > region->h ? region->w : region->h;
+    const float size = ast_sqrtf(object->w * object->h);
     view->image = *frame;
     view->origin_x = view->origin_y = 0.0f;
     view->pixel = 1.0f;
@@ -31,6 +31,7 @@ void ast_view_show(struct ast_view *view, const ast_frame *frame, const ast_box 
     const int left = within(ast_floorf(region->x), 0, frame->width - 1), top = within(ast_floorf(region->y), 0, frame->height - 1);
     const int right = within(ast_ceilf(region->x + region->w), left + 1, frame->width);
     const int bottom = within(ast_ceilf(region->y + region->h), top + 1, frame->height);
+    const float longest = (float)(right - left > bottom - top ? right - left : bottom - top);
     view->origin_x = (float)left;
     view->origin_y = (float)top;
     if (size > (float)view->object) view->pixel = size / (float)view->object;

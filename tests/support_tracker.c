@@ -21,6 +21,7 @@ ast_config small_robust_config(void) {
     ast_config cfg;
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_config_preset(&cfg, AST_PRESET_ROBUST));
     cfg.particles = AST_TILE + 8;
+    cfg.shortlist = AST_TILE + 1;
     cfg.view = 64;
     cfg.gradient_cells = 4;
     cfg.patch_width = 8;

@@ -59,7 +59,7 @@ static void compare(struct pair *p, const ast_frame *frame) {
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(p->first, &x));
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(p->second, &y));
     TEST_ASSERT_EQUAL_INT(x.models, y.models);
-    for (int i = 0; i < x.count * x.models; i++) {
+    for (int i = 0; i < x.scored * x.models; i++) {
         const double difference = fabs((double)x.distance[i] - (double)y.distance[i]);
         TEST_ASSERT_TRUE(difference >= 0); /* false for NaN */
         if (difference > here) here = difference;

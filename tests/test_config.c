@@ -45,6 +45,7 @@ static void free_of_cross_rules(ast_config *c, const char *field) {
     c->view = AST_MAX_VIEW;
     c->gradient_weight = strcmp(field, "view") == 0 ? 0.0f : 1.0f;
     c->background = alone ? 0 : AST_MAX_BACKGROUND;
+    c->shortlist = 0;
     c->background_refresh = 0;
     c->score_uncertain = 1.0f;
     c->score_lost = 0.0f;
@@ -159,12 +160,14 @@ static void test_table_names_its_members(void) {
         int kind;
     } members[] = {
         MEMBER(particles, AST_FIELD_INT),
+        MEMBER(shortlist, AST_FIELD_INT),
         MEMBER(walk_x, AST_FIELD_FLOAT),
         MEMBER(walk_y, AST_FIELD_FLOAT),
         MEMBER(walk_scale, AST_FIELD_FLOAT),
         MEMBER(draws, AST_FIELD_ENUM),
         MEMBER(velocity, AST_FIELD_FLOAT),
         MEMBER(incumbent, AST_FIELD_ENUM),
+        MEMBER(prior, AST_FIELD_FLOAT),
         MEMBER(scale_min, AST_FIELD_FLOAT),
         MEMBER(scale_max, AST_FIELD_FLOAT),
         MEMBER(view, AST_FIELD_INT),
@@ -262,10 +265,12 @@ static void test_limits_are_those_of_the_header(void) {
         float minimum, maximum;
     } limits[] = {
         {"particles", 1, AST_MAX_PARTICLES},
+        {"shortlist", 0, AST_MAX_PARTICLES},
         {"walk_x", 0, 1000},
         {"walk_y", 0, 1000},
         {"walk_scale", 0, 1},
         {"velocity", 0, 1},
+        {"prior", 0, 100},
         {"scale_min", 0.01f, 1},
         {"scale_max", 1, 100},
         {"view", 0, AST_MAX_VIEW},

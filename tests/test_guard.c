@@ -37,9 +37,13 @@ void tearDown(void) {
 }
 
 /* One frame. */
-static void see(float likeness_to_start, float likeness_to_known, float spread) {
+static void see_at(float likeness_to_start, float likeness_to_known, float spread, float score) {
     const struct ast_resemblance resemblance = {likeness_to_start, likeness_to_known};
-    ast_guard_see(&guard, &cfg, &seen, &resemblance, spread);
+    ast_guard_see(&guard, &cfg, &seen, &resemblance, spread, score);
+}
+/* One that scores well. */
+static void see(float likeness_to_start, float likeness_to_known, float spread) {
+    see_at(likeness_to_start, likeness_to_known, spread, 0.9f);
 }
 
 static void get_lost(int frames) {

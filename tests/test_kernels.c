@@ -278,7 +278,7 @@ static void test_a_tracker_gives_the_same_bits_with_all_kernels(void) {
                 if (i > 0) TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&first, &result, sizeof result, label);
                 TEST_ASSERT_EQUAL_INT(plain.models, particles.models);
                 TEST_ASSERT_EQUAL_MEMORY_MESSAGE(plain.distance, particles.distance,
-                                                 (size_t)(plain.count * plain.models) * sizeof(float), label);
+                                                 (size_t)(plain.scored * plain.models) * sizeof(float), label);
             }
         }
         render_close(&scene);

@@ -14,7 +14,7 @@ enum { MOST_ABOVE_A_THREAD = 768 };
 
 static size_t bound_of(const ast_config *c) {
     const int patch = c->patch_weight > 0.0f;
-    return AST_MEM_SIZE(c->particles, c->view, patch ? c->patch_width : 0, patch ? c->patch_height : 0,
+    return AST_MEM_SIZE(c->particles, c->shortlist, c->view, patch ? c->patch_width : 0, patch ? c->patch_height : 0,
                         c->gradient_weight > 0.0f ? c->gradient_cells : 0, c->history, c->basis_size, c->bag_size, c->background,
                         c->threads);
 }
@@ -72,6 +72,9 @@ static ast_config random_config(struct noise *noise) {
     cfg.patch_weight = cfg.gradient_weight > 0.0f && number(noise, 0, 1) ? 0.0f : 1.0f;
     cfg.background = number(noise, 0, 1) ? 0 : number(noise, 8, small ? 24 : AST_MAX_BACKGROUND);
     cfg.background_refresh = 0;
+    cfg.shortlist = cfg.background > 0 && number(noise, 0, 1)
+                        ? number(noise, 1, 2 * cfg.particles < AST_MAX_PARTICLES ? 2 * cfg.particles : AST_MAX_PARTICLES)
+                        : 0;
 #ifndef AST_NO_THREADS
     cfg.threads = number(noise, 0, 3) ? 1 : number(noise, 1, AST_MAX_THREADS);
 #endif

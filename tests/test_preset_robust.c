@@ -56,7 +56,7 @@ static void assert_finite(const ast_tracker *t, const ast_result *r) {
     assert_numbers(p.y, p.count);
     assert_numbers(p.scale, p.count);
     assert_numbers(p.weight, p.count);
-    assert_numbers(p.distance, p.count * p.models);
+    assert_numbers(p.distance, p.scored * p.models);
     for (int32_t m = 0; m < ast_bag_count(t); m++) {
         ast_subspace s;
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_model(t, m, &s));

@@ -218,7 +218,13 @@ static void expect_agreement(struct bench *b, double *worst) {
     float weight[WAYS][MOST_CANDIDATES];
     int best[WAYS];
     double most = 0;
-    for (int w = 0; w < WAYS; w++) best[w] = ast_decide(b->distance[w], b->count, models, &b->cfg, weight[w]);
+    for (int w = 0; w < WAYS; w++) {
+        struct ast_voice voice[AST_MAX_BAG];
+        ast_weigh(b->distance[w], b->count, models, &b->cfg, weight[w], voice);
+        best[w] = 0;
+        for (int i = 1; i < b->count; i++)
+            if (weight[w][i] > weight[w][best[w]]) best[w] = i;
+    }
     for (int j = 0; j < models; j++) {
         const double one = slack_of(b, best[GRAM], (double)b->distance[LITERAL][best[GRAM] * models + j]);
         const double other = slack_of(b, best[LITERAL], (double)b->distance[LITERAL][best[LITERAL] * models + j]);

@@ -87,7 +87,7 @@ static size_t state_at(void) {
 /* Words of the state before the particles, from what is behind them. cfg without a background. */
 static size_t cloud_word(const ast_config *cfg) {
     const size_t dim = (size_t)cfg->patch_width * (size_t)cfg->patch_height;
-    const size_t model = 1 + dim * ((size_t)cfg->basis_size + 1);
+    const size_t model = 2 + dim * ((size_t)cfg->basis_size + 1);
     const size_t behind = 4 * (size_t)cfg->particles + 2 + (size_t)cfg->history * dim + 2 + (size_t)cfg->bag_size * model + dim;
     return (ast_save_size(cfg) - CHECKSUM_BYTES - state_at()) / 4 - behind;
 }
@@ -129,7 +129,7 @@ static void test_format_is_as_documented(void) {
     ast_tracker *t = tracker_after(&cfg, 3);
     struct saved saved = saved_from(t), copy = saved_from(t);
     TEST_ASSERT_EQUAL_MEMORY("ASTSTATE", saved.bytes, 8);
-    TEST_ASSERT_EQUAL_UINT32(3, get_word(saved.bytes + VERSION_AT));
+    TEST_ASSERT_EQUAL_UINT32(4, get_word(saved.bytes + VERSION_AT));
     TEST_ASSERT_EQUAL_UINT32(cfg.particles, get_word(saved.bytes + CONFIG_AT)); /* the first field */
     TEST_ASSERT_EQUAL_UINT32(3, get_word(saved.bytes + state_at()));            /* frames since the start */
     sign(&copy);
@@ -254,7 +254,7 @@ static void test_state_moves_between_scorings(void) {
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(from, &a));
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(to, &b));
     TEST_ASSERT_EQUAL_INT(a.models, b.models);
-    for (int i = 0; i < a.count * a.models; i++) TEST_ASSERT_FLOAT_WITHIN(1e-3f, a.distance[i], b.distance[i]);
+    for (int i = 0; i < a.scored * a.models; i++) TEST_ASSERT_FLOAT_WITHIN(1e-3f, a.distance[i], b.distance[i]);
     TEST_ASSERT_EQUAL_MEMORY(a.x, b.x, (size_t)a.count * sizeof *a.x);
     saved_free(&saved);
     ast_free(from);
@@ -468,7 +468,7 @@ static void test_values_out_of_range_are_rejected(void) {
     ast_tracker *t = tracker_after(&cfg, 6), *source = tracker_after(&cfg, 4);
     const uint32_t n = (uint32_t)cfg.particles, dim = 16, p = (uint32_t)cfg.history, k = (uint32_t)cfg.bag_size;
     const uint32_t cloud = (uint32_t)cloud_word(&cfg), history = cloud + 4 * n, bag = history + 2 + p * dim;
-    const uint32_t model = 1 + dim * ((uint32_t)cfg.basis_size + 1);
+    const uint32_t model = 2 + dim * ((uint32_t)cfg.basis_size + 1);
     struct saved sample = saved_from(source);
     const uint32_t confidence = (uint32_t)random_word(source, &sample) + 2;
     const struct {
@@ -490,12 +490,14 @@ static void test_values_out_of_range_are_rejected(void) {
         {"usual likeness to what is known above 1", confidence + 3, 1, 1, 1.1},
         {"lasting likeness to the start below -1", confidence + 4, 1, -1, -1.1},
         {"lasting likeness to what is known above 1", confidence + 5, 1, 1, 1.1},
-        {"negative count of trusted frames", confidence + 6, 0, 10000, -1},
-        {"more trusted frames than are counted", confidence + 6, 0, 0, 10001},
-        {"negative count of refused frames", confidence + 7, 0, 5, -1},
-        {"neither lost nor not", confidence + 8, 0, 1, 2},
-        {"last good place far away", confidence + 9, 1, 30, -1e30},
-        {"last good scale 0", confidence + 11, 1, 1, 0},
+        {"steady score above 1", confidence + 6, 1, 1, 1.1},
+        {"steady score below 0", confidence + 6, 1, 0, -0.1},
+        {"negative count of trusted frames", confidence + 7, 0, 10000, -1},
+        {"more trusted frames than are counted", confidence + 7, 0, 0, 10001},
+        {"negative count of refused frames", confidence + 8, 0, 5, -1},
+        {"neither lost nor not", confidence + 9, 0, 1, 2},
+        {"last good place far away", confidence + 10, 1, 30, -1e30},
+        {"last good scale 0", confidence + 12, 1, 1, 0},
         {"particle's scale 0", cloud + 2 * n, 1, 1, 0},
         {"negative weight", cloud + 3 * n, 1, 0.5, -0.01},
         {"weight above 1", cloud + 3 * n, 1, 0.5, 1.01},
@@ -505,6 +507,8 @@ static void test_values_out_of_range_are_rejected(void) {
         {"bag too full", bag, 0, k, k + 1},
         {"oldest model beyond the bag", bag + 1, 0, 0, k},
         {"rank above n", bag + 2, 0, 1, cfg.basis_size + 1},
+        {"a model's share below 0", bag + 3, 1, 0.5, -0.1},
+        {"a model's share above 1", bag + 3, 1, 1, 1.1},
         {"rank of the second model above n", bag + 2 + model, 0, 1, cfg.basis_size + 1},
     };
     for (size_t l = 0; l < sizeof lies / sizeof lies[0]; l++) {
@@ -608,9 +612,9 @@ static void test_largest_accepted_vectors_do_no_harm(void) {
         unsigned char *model = history + 4 * ((size_t)cfg.history * dim + 2);
         const float largest = largest_accepted(t, &block, history);
         if (where / 2 & HISTORY) fill(history, (size_t)cfg.history * dim, largest, 7);
-        for (int32_t m = 0; m < cfg.bag_size; m++, model += 4 * (1 + basis + dim)) {
-            if (where / 2 & BASES) fill(model + 4, basis, where / 2 & ANCHOR ? largest : 1.0f, basis + 1);
-            if (where / 2 & MEANS) fill(model + 4 * (1 + basis), dim, largest, 3);
+        for (int32_t m = 0; m < cfg.bag_size; m++, model += 4 * (2 + basis + dim)) {
+            if (where / 2 & BASES) fill(model + 8, basis, where / 2 & ANCHOR ? largest : 1.0f, basis + 1);
+            if (where / 2 & MEANS) fill(model + 4 * (2 + basis), dim, largest, 3);
         }
         if (where / 2 & ANCHOR) fill(model, dim, largest, 5);
         sign(&block);
@@ -674,7 +678,7 @@ static void test_every_other_configuration_is_a_mismatch(void) {
 }
 
 static void test_unknown_version_is_a_mismatch(void) {
-    static const uint32_t versions[] = {0, 1, 2, 4, 0x01000000u, 0xffffffffu};
+    static const uint32_t versions[] = {0, 1, 2, 3, 5, 0x01000000u, 0xffffffffu};
     const ast_config cfg = smallest_config();
     ast_tracker *t = tracker_after(&cfg, 4);
     struct saved before = saved_from(t), block = saved_from(t);

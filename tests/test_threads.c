@@ -52,7 +52,7 @@ static void run_steps(ast_tracker *t, int from, int to, struct run *run) {
         memset(&run->result[f], 0, sizeof run->result[f]);
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, &run->result[f]));
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &particles));
-        const size_t count = (size_t)(particles.count * particles.models);
+        const size_t count = (size_t)(particles.scored * particles.models);
         float *more = realloc(run->distance, (run->distances + count) * sizeof *more);
         TEST_ASSERT_NOT_NULL(more);
         memcpy(more + run->distances, particles.distance, count * sizeof *more);

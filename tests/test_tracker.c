@@ -60,7 +60,7 @@ static ast_config variant(int which) {
     }
     if (which == 13) cfg.basis = AST_BASIS_CENTRED;
     if (which == 14) cfg.patch_weight = 0.0f;
-    if (which == 15) cfg.background = cfg.background_refresh = 0;
+    if (which == 15) cfg.background = cfg.background_refresh = cfg.shortlist = 0;
     if (which == 16) cfg.gradient_weight = 0.0f, cfg.ridge = 1e-4f, cfg.background_ratio = 10.0f;
     return cfg;
 }
@@ -88,7 +88,7 @@ static void assert_sane(const ast_tracker *t, const ast_result *r, const ast_fra
         sum += (double)p.weight[i];
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.0, sum);
-    for (int i = 0; i < p.count * p.models; i++) TEST_ASSERT_TRUE(isfinite(p.distance[i]));
+    for (int i = 0; i < p.scored * p.models; i++) TEST_ASSERT_TRUE(isfinite(p.distance[i]));
     for (int32_t m = 0; m < ast_bag_count(t); m++) {
         ast_subspace s;
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_model(t, m, &s));

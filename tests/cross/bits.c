@@ -52,7 +52,7 @@ static void track(const ast_config *cfg, const char *name) {
     ast_particles p;
     code = ast_get_particles(t, &p);
     if (code != AST_OK) give_up(name, code);
-    for (int32_t i = 0; i < p.count * p.models; i++) hash = mix_float(hash, p.distance[i]);
+    for (int32_t i = 0; i < p.scored * p.models; i++) hash = mix_float(hash, p.distance[i]);
 
     const size_t size = ast_save_size(cfg);
     unsigned char *block = malloc(size);

@@ -49,7 +49,7 @@ static inline void require_sane(const ast_tracker *t, const ast_result *r) {
         sum += (double)p.weight[i];
     }
     REQUIRE(fabs(sum - 1) < 1e-4);
-    for (int32_t i = 0; i < p.count * p.models; i++) REQUIRE(isfinite(p.distance[i]));
+    for (int32_t i = 0; i < p.scored * p.models; i++) REQUIRE(isfinite(p.distance[i]));
 }
 
 #endif

@@ -71,6 +71,7 @@ class Particles(ctypes.Structure):
         ("weight", c_void_p),
         ("count", c_int32),
         ("models", c_int32),
+        ("scored", c_int32),
         ("distance", c_void_p),
         ("reference", Box),
     )

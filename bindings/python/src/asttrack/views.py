@@ -59,7 +59,7 @@ class Memory:
             self.floats(cloud.y, count),
             self.floats(cloud.scale, count),
             self.floats(cloud.weight, count),
-            self.floats(cloud.distance, (cloud.count, cloud.models)) if cloud.distance else None,
+            self.floats(cloud.distance, (cloud.scored, cloud.models)) if cloud.distance else None,
             (cloud.reference.x, cloud.reference.y),
             (cloud.reference.w, cloud.reference.h),
         )
