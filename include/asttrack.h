@@ -142,7 +142,7 @@ typedef struct ast_config {
     /* Particles (paper section 2.1) */
     int32_t particles; /* N, 1 .. AST_MAX_PARTICLES */
     int32_t
-        shortlist; /* of them scored in full, those that an inner product finds likeliest; 0 or N: all (the paper's); needs a background */
+        shortlist; /* of them scored in full, the likeliest at a glance at the grey patch; 0 or N: all (the paper's); needs a background */
     float walk_x;      /* standard deviation of the random walk in x, pixels a frame, 0 .. 1000 */
     float walk_y;      /* the same in y */
     float walk_scale;  /* the same for the natural logarithm of the scale, 0 .. 1 */
@@ -454,9 +454,9 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
      AST_MEM_VIEW_(v, AST_MEM_LEAST_(v, 4 * AST_MEM_LANES_)) + AST_MEM_GRADIENT_(v, c) + AST_MEM_FRAME_(P, n, k, b, columns) +     \
      AST_MEM_DESKS_(pw, ph, dim, P, n, b, columns, T) + AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim) * (n)) + AST_MEM_FLOATS_(k) +         \
      AST_MEM_REALS_(4 * (k)) + AST_MEM_FLOATS_(AST_MEM_MOST_((N), AST_MEM_SCORED_(N, S) * (k))) +                                  \
-     (AST_MEM_SCORED_(N, S) < (N)                                                                                                  \
-          ? AST_MEM_FLOATS_(AST_MEM_STRIDE_(dim)) + AST_MEM_FLOATS_(N) + AST_MEM_FLOATS_(S) + AST_MEM_REALS_(b)                    \
-          : 0))
+     (AST_MEM_SCORED_(N, S) < (N) ? AST_MEM_FLOATS_((pw) * (ph) > 0 ? (pw) * (ph) : 8 * (c) * (c)) + AST_MEM_FLOATS_(N) +          \
+                                        AST_MEM_FLOATS_(S) + AST_MEM_REALS_(b)                                                     \
+                                  : 0))
 #define AST_MEM_OF_(N, S, v, pw, ph, c, P, n, k, b, T)                                                                             \
     AST_MEM_SUM_(N, S, v, pw, ph, c, AST_MEM_DIM_(pw, ph, c), P, n, k, b, AST_MEM_COLUMNS_(P, n, k, b), T)
 

@@ -53,6 +53,17 @@ int ast_features_length(const ast_config *cfg) {
     return length;
 }
 
+/* The first that this configuration has; there is one. */
+static const struct part *first_part(const ast_config *cfg) {
+    int p = 0;
+    while (p + 1 < PARTS && parts[p].length(cfg) == 0) p++;
+    return &parts[p];
+}
+
+int ast_features_glance_length(const ast_config *cfg) {
+    return first_part(cfg)->length(cfg);
+}
+
 void ast_features_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
     f->cfg = *cfg;
     for (int p = 0; p < PARTS; p++)
@@ -77,4 +88,9 @@ void ast_features_vector(const struct ast_features *f, struct ast_features_scrat
         parts[p].vector(f, own, image, window, vector);
         vector += length;
     }
+}
+
+void ast_features_glance(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
+                         const ast_box *window, float *vector) {
+    first_part(&f->cfg)->vector(f, own, image, window, vector);
 }

@@ -381,7 +381,7 @@ static int tile(const union ast_scratch *scratch, union ast_tile_scratch *own, c
 
 /* With the likelihood ratio the squares of mu_i cancel in the Mahalanobis term, and what is left of it is linear in the patch:
  * -(mu_j - m_b)'M x but for a factor, for each model. */
-static void aim(const union ast_scratch *scratch, const struct ast_scene *scene, const float *say, float *direction) {
+static void aim(const union ast_scratch *scratch, const struct ast_scene *scene, const float *say, int length, float *direction) {
     const ast_real floor = (ast_real)1e-3; /* a model that did not speak for the last winner may for this one */
     const struct ast_gram *s = &scratch->gram;
     const struct ast_bag *bag = scene->bag;
@@ -389,22 +389,22 @@ static void aim(const union ast_scratch *scratch, const struct ast_scene *scene,
     const float *origin = lead_column(bag, mean), *of_origin = ast_metric_known(&s->metric, mean);
     ast_real *taken = s->taken, total = 0;
     for (int r = 0; r < size; r++) taken[r] = 0;
-    for (int d = 0; d < s->dim; d++) direction[d] = 0.0f;
+    for (int d = 0; d < length; d++) direction[d] = 0.0f;
     for (int j = 0; j < bag->count; j++) {
         const ast_real part = (ast_real)say[j] + floor;
         const float share = (float)part, *centre = ast_bag_mean(bag, j);
         const float *of_centre = ast_metric_known(&s->metric, bag->lead + j * (bag->n + 1) + bag->n);
         for (int r = 0; r < size; r++) taken[r] += part * ((ast_real)of_centre[r] - (ast_real)of_origin[r]);
-        for (int d = 0; d < s->dim; d++) direction[d] += share * (centre[d] - origin[d]);
+        for (int d = 0; d < length; d++) direction[d] += share * (centre[d] - origin[d]);
     }
     ast_metric_back(&s->metric, taken);
     for (int r = 0; r < size; r++) {
         const float share = (float)taken[r], *vector = lead_column(bag, mean + 1 + r);
         total += taken[r];
-        for (int d = 0; d < s->dim; d++) direction[d] -= share * vector[d];
+        for (int d = 0; d < length; d++) direction[d] -= share * vector[d];
     }
     const float share = (float)total;
-    for (int d = 0; d < s->dim; d++) direction[d] += share * origin[d];
+    for (int d = 0; d < length; d++) direction[d] += share * origin[d];
 }
 
 const struct ast_scoring ast_scoring_gram = {lead, layout, tile_layout, prepare, aim, tile};

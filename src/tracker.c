@@ -84,7 +84,7 @@ static void layout(struct ast_tracker *t, const ast_config *cfg, const struct as
     t->distance = ast_arena_take(arena, distances > particles ? distances : particles, sizeof *t->distance);
     t->voice = ast_arena_take(arena, (size_t)cfg->bag_size, sizeof *t->voice);
     if (scored < particles) {
-        t->direction = ast_arena_take(arena, stride, sizeof *t->direction);
+        t->direction = ast_arena_take(arena, (size_t)ast_features_glance_length(cfg), sizeof *t->direction);
         t->promise = ast_arena_take(arena, particles, sizeof *t->promise);
         t->heap = ast_arena_take(arena, scored, sizeof *t->heap);
     }
@@ -333,22 +333,29 @@ struct round {
     int models;
 };
 
-/* Puts the vectors of a tile of particles on the desk, of the first `count` of all. Returns how many they are. */
-static int describe_tile(struct ast_desk *desk, const struct ast_tracker *t, int first, int count) {
-    const int used = count - first < AST_TILE ? count - first : AST_TILE;
-    for (int i = 0; i < used; i++) {
-        const struct ast_state state = {t->proposal.x[first + i], t->proposal.y[first + i], t->proposal.scale[first + i]};
-        const ast_box window = window_of(t, &state);
-        describe_at(desk, t, &window, desk->tile + (size_t)i * (size_t)t->stride);
-    }
-    return used;
+static ast_box window_of_particle(const struct ast_tracker *t, int i) {
+    const struct ast_state state = {t->proposal.x[i], t->proposal.y[i], t->proposal.scale[i]};
+    return window_of(t, &state);
 }
 
-static int promise_part(void *shared, int worker, int part) {
+/* How many of `all` there are in a part. */
+static int in_part(int part, int all) {
+    const int rest = all - part * AST_TILE;
+    return rest < AST_TILE ? rest : AST_TILE;
+}
+
+/* What a glance at the particles promises. */
+static int glance_part(void *shared, int worker, int part) {
     const struct round *round = (const struct round *)shared;
     const struct ast_tracker *t = round->t;
-    const int first = part * AST_TILE, count = describe_tile(&t->desk[worker], t, first, t->proposal.count);
-    ast_product(count, 1, t->dim, t->desk[worker].tile, t->stride, t->direction, t->stride, t->promise + first, AST_LANES);
+    struct ast_desk *desk = &t->desk[worker];
+    const int first = part * AST_TILE, count = in_part(part, t->proposal.count);
+    for (int i = 0; i < count; i++) {
+        const ast_box box = window_of_particle(t, first + i), window = ast_view_box(&t->view, &box);
+        ast_features_glance(&t->features, &desk->features, &t->view.image, &window, desk->tile + (size_t)i * (size_t)t->stride);
+    }
+    ast_product(count, 1, ast_features_glance_length(&t->cfg), desk->tile, t->stride, t->direction, t->stride, t->promise + first,
+                AST_LANES);
     return 0;
 }
 
@@ -356,10 +363,14 @@ static int score_part(void *shared, int worker, int part) {
     const struct round *round = (const struct round *)shared;
     struct ast_tracker *t = round->t;
     struct ast_desk *desk = &t->desk[worker];
-    const int first = part * AST_TILE, count = describe_tile(desk, t, first, t->scored);
+    const int first = part * AST_TILE, count = in_part(part, t->scored);
     float *distance = t->distance + (size_t)first * (size_t)round->models;
     struct ast_scene scene = round->scene;
     scene.work = desk->work;
+    for (int i = 0; i < count; i++) {
+        const ast_box window = window_of_particle(t, first + i);
+        describe_at(desk, t, &window, desk->tile + (size_t)i * (size_t)t->stride);
+    }
     if (t->bag.count > 0) return t->scoring->tile(&t->scoring_scratch, &desk->scoring, &scene, desk->tile, count, distance);
     distances_to_mean(t, t->mean, desk->tile, count, distance);
     return 0;
@@ -398,12 +409,12 @@ static int prepare_part(void *shared, int worker, int part) {
 
 /* Brings the particles that are worth to be scored in full to the front of the proposal. Until there is a bag, all are. */
 static void shortlist(struct ast_tracker *t, struct round *round) {
-    const struct ast_task promises = {promise_part, round, parts_of(t->proposal.count), 1};
+    const struct ast_task glances = {glance_part, round, parts_of(t->proposal.count), 1};
     const int wanted = ast_shortlist_length(&t->cfg);
     t->scored = t->bag.count > 0 ? wanted : t->proposal.count;
     if (t->scored == t->proposal.count) return;
-    t->scoring->aim(&t->scoring_scratch, &round->scene, t->bag.say, t->direction);
-    (void)ast_workers_share(t->workers, &promises); /* nothing in it can fail */
+    t->scoring->aim(&t->scoring_scratch, &round->scene, t->bag.say, ast_features_glance_length(&t->cfg), t->direction);
+    (void)ast_workers_share(t->workers, &glances); /* nothing in it can fail */
     ast_shortlist(&t->proposal, t->promise, wanted, t->heap);
 }
 

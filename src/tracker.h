@@ -59,12 +59,12 @@ struct ast_tracker {
     int models;              /* columns of distance; 0 before the first step */
     int scored;              /* rows of it */
     struct ast_voice *voice; /* what each model said at the last step: bag_size */
-    float *direction;        /* in which a patch comes nearer to the models: dim; NULL without a shortlist, as the next two */
-    float *promise;          /* along it, of each particle */
-    float *heap;             /* to choose among them: shortlist */
-    float *mean;             /* of a set being fitted: dim */
-    float *basis;            /* of it: basis_size columns */
-    size_t work_count;       /* elements of a desk's work */
+    float *direction;  /* in which what is seen at a glance comes nearer to the models; NULL without a shortlist, as the next two */
+    float *promise;    /* along it, of each particle */
+    float *heap;       /* to choose among them: shortlist */
+    float *mean;       /* of a set being fitted: dim */
+    float *basis;      /* of it: basis_size columns */
+    size_t work_count; /* elements of a desk's work */
     struct ast_workers *workers;
 };
 

@@ -202,16 +202,16 @@ static void describe(ast_tracker *t, const ast_particles *p, int i, float *vecto
     ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
 }
 
-/* The direction in which a patch comes nearer to the models: M times the sum of mu_j - m_b, each with its say and a little more. Returns
- * the length of the difference, relative to the direction's own. */
-static double direction_difference(const struct known *known, const float *say, const float *found) {
+/* The direction in which a patch comes nearer to the models: M times the sum of mu_j - m_b, each with its say and a little more; of
+ * its first floats. Returns the length of the difference, relative to the direction's own. */
+static double direction_difference(const struct known *known, const float *say, int length, const float *found) {
     const int dim = known->dim;
     double *sum = matrix_new(dim, 1), *expected = matrix_new(dim, 1), square = 0, difference = 0;
     for (int m = 0; m < known->models; m++)
         for (int d = 0; d < dim; d++)
             sum[d] += ((double)say[known->slot[m]] + 1e-3) * (known->mean[m * dim + d] - known->origin[d]);
     matrix_product(dim, 1, dim, known->metric, sum, expected);
-    for (int d = 0; d < dim; d++) {
+    for (int d = 0; d < length; d++) {
         square += expected[d] * expected[d];
         difference += pow((double)found[d] - expected[d], 2);
     }
@@ -243,7 +243,7 @@ static double largest_difference(const ast_config *cfg, const struct ast_linalg 
         if (compare) known = known_from(t);
         memcpy(say, t->bag.say, (size_t)t->bag.count * sizeof *say);
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, NULL));
-        if (compare) worst = fmax(worst, direction_difference(&known, say, t->direction));
+        if (compare) worst = fmax(worst, direction_difference(&known, say, ast_features_glance_length(cfg), t->direction));
         TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
         for (int i = f % every; i < p.scored && compare; i += every) {
             describe(t, &p, i, vector);
