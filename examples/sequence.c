@@ -10,14 +10,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* ---- Names in the order of their numbers ---- */
+/* ---- Names in natural order ---- */
 
 static bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/* Compares two names; runs of digits compare as numbers of any length, with leading zeros of no account. The extension is left out:
- * 7.pgm and 07.jpg are the same frame twice. */
+/* Compares two names; runs of digits compare as numbers of any length, with leading zeros of no account, all else byte by byte. The
+ * extension is left out: 7.pgm and 07.jpg are the same frame twice. The Python package has the same rule (natural_order.py). */
 static int compare_natural(const char *a, const char *b) {
     const char *end_a = strrchr(a, '.'), *end_b = strrchr(b, '.');
     while (a < end_a && b < end_b) {

@@ -18,8 +18,10 @@ typedef struct sequence {
 bool sequence_open(sequence *s, char **inputs, int count);
 void sequence_close(sequence *s);
 
-/* The numbered frames (digits before .pgm, .ppm, .jpg or .jpeg) of a directory in the order of their numbers. False after
- * reporting why; no frames at all is no failure. *names is an array of *count strings to release with sequence_free_names. */
+/* The numbered frames (digits before .pgm, .ppm, .jpg or .jpeg) of a directory in natural order: runs of digits compare as numbers
+ * of any length, all else byte by byte, without the extension. Two names that are equal so far, such as 7.pgm and 07.jpg, are the
+ * same frame twice: a failure. False after reporting why; no frames at all is no failure. *names is an array of *count strings to
+ * release with sequence_free_names. */
 bool sequence_list(const char *directory, char ***names, int32_t *count);
 void sequence_free_names(char **names, int32_t count);
 

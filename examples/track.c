@@ -26,9 +26,9 @@ static const option table[] = {
 static void print_help(void) {
     printf(
         "usage: asttrack track DIR|FILES... [options]\n"
-        "Follows one object through DIR's numbered .pgm, .ppm, .jpg frames (or those of DIR/img), or through FILES in their\n"
-        "order. With groundtruth.txt or groundtruth_rect.txt in DIR, its first line is the default box and the track is\n"
-        "compared with it. Ends with one line on stdout:\n"
+        "Follows one object through DIR's numbered .pgm, .ppm, .jpg frames (or those of DIR/img) in natural order, 9.pgm before\n"
+        "10.pgm, or through FILES in the order given. With groundtruth.txt or groundtruth_rect.txt in DIR, its first line is the\n"
+        "default box and the track is compared with it. Ends with one line on stdout:\n"
         "  result name=NAME frames=N cle=PIXELS precision20=SHARE success=OVERLAP fps=RATE lost=N [skipped=N]\n"
         "cle: mean centre location error; precision20: share of frames with at most 20 pixels of it; success: mean overlap, the\n"
         "area under the success curve; fps: of the tracker's steps alone; skipped: frames that could not be read.\n\n");

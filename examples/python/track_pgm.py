@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import asttrack
+from asttrack.natural_order import natural_key
 
 # Magic, width, height and greatest value, between white space and comments; the pixels follow one white space later.
 HEADER = re.compile(rb"P5" + 3 * rb"(?:\s|#[^\n]*\n)+(\d+)" + rb"\s")
@@ -39,8 +40,8 @@ def four_numbers(text: str) -> asttrack.Box:
 
 def track(frames: Path, box: asttrack.Box | None) -> None:
     """Prints a line for each frame."""
-    # Shorter names first: 10.pgm comes after 9.pgm.
-    files = sorted(list(frames.glob("*.pgm")) or frames.glob("img/*.pgm"), key=lambda path: (len(path.name), path.name))
+    # 10.pgm comes after 9.pgm.
+    files = sorted(list(frames.glob("*.pgm")) or frames.glob("img/*.pgm"), key=lambda path: natural_key(path.name))
     if not files:
         raise ValueError(f"{frames}: no PGM frames in it")
     if box is None:

@@ -1,15 +1,27 @@
-"""Sequences on disk: layouts, forms of ground truth, and what is wrong with them."""
+"""Sequences on disk: layouts, forms of ground truth, and what is wrong with them.
 
+The lists in tests/sequences are the C tests', too.
+"""
+
+import os
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 
-from asttrack.evaluation.sequence import find_sequences, read_grey, read_sequence, read_truth
+from asttrack.evaluation.sequence import find_sequences, numbered_pictures, read_grey, read_sequence, read_truth
 from asttrack.failures import DataError
+from asttrack.natural_order import natural_key
+from header import REPOSITORY
 
 BOX = "10,12,20,22"
+
+
+def listed(name: str) -> list[str]:
+    """The lines of a list that are neither empty nor comments."""
+    lines = (REPOSITORY / "tests" / "sequences" / name).read_text(encoding="utf-8").split("\n")
+    return [line for line in lines if line and not line.startswith("#")]
 
 
 def make(directory: Path, lines: list[str], frames: int, truth: str = "groundtruth.txt", folder: str = "img") -> Path:
@@ -65,7 +77,29 @@ def test_bad_ground_truth_is_named_by_its_line(tmp_path: Path, text: str, messag
     assert "\n" not in str(failure.value)
 
 
-def test_frames_come_in_the_order_of_their_numbers(tmp_path: Path) -> None:
+def test_frames_come_in_natural_order(tmp_path: Path) -> None:
+    names = listed("frame_names.txt")
+    for name in (*names, "notes.txt", "cover.pgm", ".1.pgm", "1", "1.pgm.part", "\u0663.pgm"):
+        (tmp_path / name).touch()
+    assert [path.name for path in numbered_pictures(tmp_path)] == names
+
+
+def test_names_that_are_no_text_come_in_the_order_of_their_bytes() -> None:
+    names = [b"\xf0\x9f\x99\x821.pgm", b"\xff2.pgm", b"\xff10.pgm"]
+    assert sorted(map(os.fsdecode, reversed(names)), key=natural_key) == list(map(os.fsdecode, names))
+
+
+@pytest.mark.parametrize("pair", listed("same_frames.txt"))
+def test_the_same_frame_twice_is_refused(tmp_path: Path, pair: str) -> None:
+    first, second = pair.split()
+    for name in (second, first):
+        (tmp_path / name).touch()
+    with pytest.raises(DataError) as failure:
+        numbered_pictures(tmp_path)
+    assert str(failure.value) == f"{tmp_path}: {first} and {second} have the same number"
+
+
+def test_pictures_are_read_in_the_order_of_their_numbers(tmp_path: Path) -> None:
     (tmp_path / "img").mkdir()
     for number in (1, 2, 10, 100):
         cv2.imwrite(str(tmp_path / "img" / f"frame{number}.png"), np.full((8, 8), number, np.uint8))

@@ -2,9 +2,11 @@
 
 import codecs
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -13,6 +15,7 @@ from numpy.typing import NDArray
 
 from asttrack.failures import DataError, unusable
 from asttrack.frames import Frame
+from asttrack.natural_order import natural_key
 
 TRUTH_NAMES = ("groundtruth.txt", "groundtruth_rect.txt")
 ABSENCE_NAME = "absence.label"
@@ -103,19 +106,23 @@ def read_sequence(directory: Path) -> Sequence:
 
 
 def numbered_pictures(directory: Path) -> list[Path]:
-    """Pictures in the order of the numbers that end their names: those of `img/` where it has any, else the directory's own.
+    """Pictures whose names end in a number, in natural order: those of `img/` where it has any, else the directory's own.
 
-    Raises DataError where the directory cannot be read.
+    Raises DataError where the directory cannot be read, or holds the same frame twice (`7.pgm` and `07.jpg`).
     """
     for place in (directory / "img", directory):
         if not place.is_dir() and place != directory:
             continue
         try:
-            numbered = [(int(match[1]), path.name, path) for path in place.iterdir() if (match := _number(path))]
+            keyed = [(natural_key(path.name), os.fsencode(path.name), path) for path in place.iterdir() if _is_numbered(path)]
         except OSError as error:
             raise unusable(place, error) from error
-        if numbered:
-            return [path for _, _, path in sorted(numbered)]
+        keyed.sort()
+        for (key, _, path), (next_key, _, next_path) in pairwise(keyed):
+            if key == next_key:
+                raise DataError(f"{place}: {path.name} and {next_path.name} have the same number")
+        if keyed:
+            return [path for _, _, path in keyed]
     return []
 
 
@@ -177,9 +184,9 @@ def _truth_path(directory: Path) -> Path | None:
     return next((directory / name for name in TRUTH_NAMES if (directory / name).is_file()), None)
 
 
-def _number(path: Path) -> re.Match[str] | None:
-    """Matches the digits that end the stem of a picture's name."""
-    return re.search(r"(\d+)$", path.stem) if path.suffix.lower() in PICTURES and not path.name.startswith(".") else None
+def _is_numbered(path: Path) -> bool:
+    """Whether this is the name of a picture with a digit before the extension."""
+    return path.suffix.lower() in PICTURES and path.stem[-1] in "0123456789" and not path.name.startswith(".")
 
 
 def _parse_box(line: str, place: str) -> list[float]:
