@@ -91,10 +91,10 @@ void option_print(const option *table) {
     printf("  %-26s %s\n", "--help", "this text");
 }
 
-/* Which strtod reads, and neither the Python package nor whoever writes numbers for people. */
-static bool is_hexadecimal(const char *text) {
+/* strtod reads hexadecimal numbers and words, too, and neither the Python package nor whoever writes numbers for people does. */
+static bool is_decimal(const char *text) {
     text += *text == '+' || *text == '-';
-    return text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+    return (isdigit((unsigned char)text[0]) || text[0] == '.') && !(text[0] == '0' && (text[1] == 'x' || text[1] == 'X'));
 }
 
 bool option_parse_integer(const char **text, long *value) {
@@ -108,12 +108,21 @@ bool option_parse_integer(const char **text, long *value) {
     return true;
 }
 
-bool option_parse_real(const char **text, double *value) {
+bool option_parse_decimal(const char **text, double *value) {
     char *end;
-    if (isspace((unsigned char)**text) || is_hexadecimal(*text)) return false;
+    if (!is_decimal(*text)) return false;
     const double number = strtod(*text, &end);
-    if (end == *text || !(fabs(number) <= (double)FLT_MAX)) return false;
+    if (end == *text) return false;
     *text = end;
+    *value = number;
+    return true;
+}
+
+bool option_parse_real(const char **text, double *value) {
+    const char *at = *text;
+    double number;
+    if (!option_parse_decimal(&at, &number) || fabs(number) > (double)FLT_MAX) return false;
+    *text = at;
     *value = number;
     return true;
 }

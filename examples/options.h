@@ -50,5 +50,7 @@ bool option_size(const char *name, const char *text, int32_t minimum, int32_t ma
  * that a long or a finite float can hold. No leading white space is taken. */
 bool option_parse_integer(const char **text, long *value);
 bool option_parse_real(const char **text, double *value);
+/* The same of any size: infinite where a double cannot hold it. */
+bool option_parse_decimal(const char **text, double *value);
 
 #endif

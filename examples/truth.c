@@ -4,15 +4,22 @@
 #include "report.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Far longer than four numbers can be. */
-#define LINE_SIZE 512
+/* Far longer than four numbers are. The Python reader has the same limit, and gives the same reasons. */
+#define MOST_BYTES 511
 
-static const char *skip_separators(const char *at) {
-    return at + strspn(at, " \t,");
+static const char *skip_blanks(const char *at) {
+    return at + strspn(at, " \t");
+}
+
+/* What parts two numbers: a comma, blanks, or both. Two commas have a field between them that was left empty. */
+static const char *skip_separator(const char *at) {
+    at = skip_blanks(at);
+    return *at == ',' ? skip_blanks(at + 1) : at;
 }
 
 static bool is_nan(const char **at) {
@@ -27,20 +34,25 @@ static bool is_nan(const char **at) {
 
 /* NULL, or why the line is not a box. */
 static const char *parse_line(const char *line, ast_box *box) {
+    static const char no_box[] = "not four numbers x,y,w,h";
     double number[4];
     int nans = 0;
-    const char *at = line + strspn(line, " \t");
+    bool beyond = false;
+    const char *at = skip_blanks(line);
     for (int i = 0; i < 4; ++i) {
         if (is_nan(&at)) {
             ++nans;
-        } else if (!option_parse_real(&at, &number[i])) {
-            return "not four numbers x,y,w,h";
+        } else if (option_parse_decimal(&at, &number[i])) {
+            beyond = beyond || fabs(number[i]) > (double)FLT_MAX;
+        } else {
+            return no_box;
         }
-        const char *next = skip_separators(at);
-        if (i < 3 && next == at) return "not four numbers x,y,w,h";
+        const char *next = skip_separator(at);
+        if (i < 3 && next == at) return no_box;
         at = next;
     }
-    if (*at != '\0') return "more than four numbers x,y,w,h";
+    if (*at != '\0') return no_box;
+    if (beyond) return "a number larger than a float holds";
     if (nans != 0 && nans != 4) return "nan in part of a box";
     if (nans == 4 || (number[0] == 0.0 && number[1] == 0.0 && number[2] == 0.0 && number[3] == 0.0)) {
         const ast_box none = {NAN, NAN, NAN, NAN};
@@ -67,13 +79,15 @@ static bool append(ground_truth *t, int32_t *capacity, const ast_box *box) {
     return true;
 }
 
-/* Reads one line without its end ("\n" or "\r\n"). 1 for a line, 0 at the end of the file, -1 when it is too long or holds a zero
- * byte, either of which no text of four numbers has. */
+/* Reads one line without its end ("\n" or "\r\n"). 1 for a line, 0 at the end of the file, -1 when it is too long. */
 static int read_line(FILE *stream, char *line) {
     size_t length = 0;
     int c;
     while ((c = getc(stream)) != EOF && c != '\n') {
-        if (c == '\0' || length + 1 == LINE_SIZE) return -1;
+        if (length == MOST_BYTES) return -1;
+        if (c == '\0') {
+            c = '?'; /* no part of a number either, and no end of the text */
+        }
         line[length++] = (char)c;
     }
     if (length > 0 && line[length - 1] == '\r') {
@@ -87,27 +101,24 @@ static int read_line(FILE *stream, char *line) {
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
 static bool read_stream(ground_truth *t, const char *path, FILE *stream) {
-    char line[LINE_SIZE];
+    char line[MOST_BYTES + 1];
     int32_t capacity = 0, blank = 0; /* blank: line number of an empty line, fine where only empty lines follow */
     for (int32_t number = 1;; ++number) {
         const int got = read_line(stream, line);
         if (got == 0) break;
-        ast_box box;
-        const char *reason = got < 0 ? "not four numbers x,y,w,h" : NULL;
-        if (reason == NULL && number == 1 && strncmp(line, byte_order_mark, strlen(byte_order_mark)) == 0) {
+        if (got > 0 && number == 1 && strncmp(line, byte_order_mark, strlen(byte_order_mark)) == 0) {
             memmove(line, line + strlen(byte_order_mark), strlen(line) + 1 - strlen(byte_order_mark));
         }
-        if (reason == NULL && skip_separators(line)[0] == '\0') {
+        if (got > 0 && skip_blanks(line)[0] == '\0') {
             blank = blank == 0 ? number : blank;
             continue;
         }
-        if (reason == NULL && blank != 0) {
+        if (blank != 0) {
             report_error("%s:%d: an empty line before the end", path, (int)blank);
             return false;
         }
-        if (reason == NULL) {
-            reason = parse_line(line, &box);
-        }
+        ast_box box;
+        const char *reason = got < 0 ? "too long for four numbers x,y,w,h" : parse_line(line, &box);
         if (reason != NULL) {
             report_error("%s:%d: %s", path, (int)number, reason);
             return false;

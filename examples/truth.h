@@ -14,7 +14,8 @@ typedef struct ground_truth {
     int32_t count;  /* lines */
 } ground_truth;
 
-/* Reads a file whose numbers are parted by commas, tabs or spaces. False after reporting file, line and reason. */
+/* Reads a file whose numbers are parted by a comma, by tabs and spaces, or by both; a comma may end a line. Numbers are decimal and
+ * within a float. False after reporting file, line and reason. */
 bool truth_read(ground_truth *t, const char *path);
 void truth_free(ground_truth *t);
 /* The box of a frame (from 0), or NULL where the file has none for it. */

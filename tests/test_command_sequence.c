@@ -1,7 +1,8 @@
-/* What the command makes of a directory: the order of its frames. The lists in tests/sequences are the Python
- * package's, too. */
+/* What the command makes of a directory: the order of its frames and the boxes of its ground truth. The lists in tests/sequences
+ * are the Python package's, too. */
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "sequence.h"
@@ -102,6 +103,102 @@ static void test_unpadded_frames_are_tracked_in_order(void) {
     TEST_ASSERT_EQUAL_STRING(padded, unpadded);
 }
 
+/* ---- Ground truth ---- */
+
+static char truth_path[PATH_SIZE];
+
+/* Replaces \n, \t, \r and \xNN by what they stand for; the length. */
+static size_t unescape(char *text) {
+    static const char letters[] = "ntr", meanings[] = "\n\t\r";
+    size_t length = 0;
+    for (const char *from = text; *from != '\0'; from++) {
+        char c = *from;
+        if (c == '\\' && *++from == 'x') {
+            const char digits[3] = {from[1], from[2], '\0'};
+            c = (char)(unsigned char)strtoul(digits, NULL, 16);
+            from += 2;
+        } else if (c == '\\') {
+            const char *letter = strchr(letters, *from);
+            TEST_ASSERT_TRUE(*from != '\0' && letter != NULL);
+            c = meanings[letter - letters];
+        }
+        text[length++] = c;
+    }
+    return length;
+}
+
+/* As the list has them: parted by spaces. */
+static void assert_boxes(const char *expected) {
+    char read[1024] = "";
+    size_t used = 0;
+    ground_truth truth;
+    TEST_ASSERT_TRUE_MESSAGE(truth_read(&truth, truth_path), expected);
+    for (int32_t i = 0; i < truth.count; i++) {
+        const ast_box *box = truth_box(&truth, i);
+        used += (size_t)(box == NULL ? snprintf(read + used, sizeof read - used, " -")
+                                     : snprintf(read + used, sizeof read - used, " %g,%g,%g,%g", (double)box->x, (double)box->y,
+                                                (double)box->w, (double)box->h));
+        TEST_ASSERT_TRUE(used < sizeof read);
+    }
+    truth_free(&truth);
+    TEST_ASSERT_EQUAL_STRING(expected, read + 1);
+}
+
+static void assert_refused(const char *reason) {
+    char text[2 * PATH_SIZE];
+    snprintf(text, sizeof text, "asttrack: %s%s\n", truth_path, reason);
+    run_badly(1, text, "track @truth");
+}
+
+static void make_truth_directory(void) {
+    make_directory(at("@truth"));
+    touch(at("@truth"), "1.pgm");
+    snprintf(truth_path, sizeof truth_path, "%s", at("@truth/groundtruth.txt"));
+}
+
+static void test_ground_truth_is_read_or_refused_by_its_line(void) {
+    char line[1024];
+    int good = 0, bad = 0;
+    FILE *list = open_list("tests/sequences/ground_truth.txt");
+    while (next_line(list, line, sizeof line)) {
+        char *bar = strstr(line, " | ");
+        TEST_ASSERT_NOT_NULL_MESSAGE(bar, line);
+        *bar = '\0';
+        const char *expected = bar + 3;
+        write_file(truth_path, line, unescape(line));
+        if (expected[0] == ':') {
+            assert_refused(expected);
+            bad++;
+        } else {
+            assert_boxes(expected);
+            good++;
+        }
+    }
+    (void)fclose(list);
+    TEST_ASSERT_TRUE(good > 10 && bad > 50);
+}
+
+/* 511 bytes are a line, its '\r' counted, and 512 are none, even where they are blank. */
+static void test_long_lines(void) {
+    char line[600];
+    memset(line, ' ', sizeof line);
+    memcpy(line, "1,2,30,40", 9);
+    memcpy(line + 510, "\r\n", 2);
+    write_file(truth_path, line, 512);
+    assert_boxes("1,2,30,40");
+    write_file(truth_path, line, 510);
+    assert_boxes("1,2,30,40");
+    memcpy(line + 510, " \r\n", 3);
+    write_file(truth_path, line, 513);
+    assert_refused(":1: too long for four numbers x,y,w,h");
+    memcpy(line, "1,2,30,40\n", 10);
+    memset(line + 510, ' ', sizeof line - 510);
+    write_file(truth_path, line, 10 + 511);
+    assert_boxes("1,2,30,40");
+    write_file(truth_path, line, 10 + 512);
+    assert_refused(":2: too long for four numbers x,y,w,h");
+}
+
 int main(int argc, char **argv) {
     (void)argc;
     if (command_open(argv[0]) != 0) return 1;
@@ -109,6 +206,9 @@ int main(int argc, char **argv) {
     RUN_TEST(test_frames_come_in_natural_order);
     RUN_TEST(test_the_same_frame_twice_is_refused);
     RUN_TEST(test_unpadded_frames_are_tracked_in_order);
+    RUN_TEST(make_truth_directory);
+    RUN_TEST(test_ground_truth_is_read_or_refused_by_its_line);
+    RUN_TEST(test_long_lines);
     command_close();
     return UNITY_END();
 }

@@ -21,6 +21,12 @@ TRUTH_NAMES = ("groundtruth.txt", "groundtruth_rect.txt")
 ABSENCE_NAME = "absence.label"
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".ppm", ".tif", ".tiff", ".webp")
 
+# A line of ground truth, as the C command reads it (examples/truth.c), which gives the same reasons.
+_MOST_BYTES = 511  # far longer than four numbers are
+_LARGEST = float(np.finfo(np.float32).max)
+_NUMBER = rb"([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[nN][aA][nN])"
+_BOX = re.compile(rb"[ \t]*" + rb"(?:[ \t]*,[ \t]*|[ \t]+)".join([_NUMBER] * 4) + rb"[ \t]*,?[ \t]*")
+
 
 @dataclass(frozen=True)
 class Sequence:
@@ -127,21 +133,29 @@ def numbered_pictures(directory: Path) -> list[Path]:
 
 
 def read_truth(path: Path) -> NDArray[np.float64]:
-    """Reads boxes, one line a frame, numbers parted by commas, tabs or spaces; `nan` or zero four times stand for no box.
+    """Reads boxes, one line a frame, numbers parted by a comma, by tabs and spaces, or by both.
 
-    Raises DataError.
+    `nan` or zero four times stand for no box.
+
+    Raises DataError, with the file, the line and the reason that the C command gives.
     """
     try:
-        lines = path.read_bytes().removeprefix(codecs.BOM_UTF8).decode("ascii").splitlines()
+        lines = path.read_bytes().split(b"\n")
     except OSError as error:
         raise unusable(path, error) from error
-    except UnicodeDecodeError as error:
-        raise DataError(f"{path}: not a text of numbers") from error
-    while lines and not lines[-1].strip():
-        lines.pop()
-    if not lines:
+    boxes: list[list[float]] = []
+    for number, line in enumerate(lines, 1):
+        text = line.removesuffix(b"\r").removeprefix(codecs.BOM_UTF8 if number == 1 else b"")
+        if len(line) <= _MOST_BYTES and not text.strip(b" \t"):
+            continue  # fine at the end of the file
+        if len(boxes) < number - 1:
+            raise DataError(f"{path}:{len(boxes) + 1}: an empty line before the end")
+        if len(line) > _MOST_BYTES:
+            raise DataError(f"{path}:{number}: too long for four numbers x,y,w,h")
+        boxes.append(_parse_box(text, f"{path}:{number}"))
+    if not boxes:
         raise DataError(f"{path}: the file is empty")
-    return np.array([_parse_box(line, f"{path}:{number}") for number, line in enumerate(lines, 1)])
+    return np.array(boxes)
 
 
 def _read_absence(path: Path, count: int) -> NDArray[np.bool_] | None:
@@ -189,19 +203,18 @@ def _is_numbered(path: Path) -> bool:
     return path.suffix.lower() in PICTURES and path.stem[-1] in "0123456789" and not path.name.startswith(".")
 
 
-def _parse_box(line: str, place: str) -> list[float]:
-    words = re.split(r"[,\s]+", line.strip().strip(","))
-    try:
-        box = [] if "_" in line else [float(word) for word in words]  # Python's own 1_000 is nobody else's
-    except ValueError:
-        box = []
-    if len(box) != 4 or any(map(math.isinf, box)):
+def _parse_box(line: bytes, place: str) -> list[float]:
+    match = _BOX.fullmatch(line)
+    if match is None:
         raise DataError(f"{place}: not four numbers x,y,w,h")
+    box = [float(number) for number in match.groups()]
+    if any(abs(number) > _LARGEST for number in box):
+        raise DataError(f"{place}: a number larger than a float holds")
     absent = [math.isnan(number) for number in box]
     if all(absent) or not any(box):
         return [math.nan] * 4
     if any(absent):
         raise DataError(f"{place}: nan in part of a box")
-    if box[2] <= 0 or box[3] <= 0:
+    if np.array(box[2:], np.float32).min() <= 0:  # a side may vanish in a float
         raise DataError(f"{place}: a box without area (nan,nan,nan,nan stands for no box)")
     return box
