@@ -14,8 +14,10 @@
 /* A cloud whose weighted deviation stays below this share of the object's size has decided: what it follows changed its looks. */
 #define DECIDED_SPREAD 0.08f
 /* But an object whose likeness to the start is lastingly at least FAITHFUL does not change all of a sudden: when it falls below
- * VANISHED of what is known, something is in front of it, however sure the cloud is about that. */
+ * VANISHED of what is known, something is in front of it, however sure the cloud is about that. Of an object that has just been met
+ * nobody can tell: it may turn, and be unlike all that one or two models know. */
 #define FAITHFUL 0.5f
+#define FAITHFUL_FRAMES 50
 #define VANISHED 0.35f
 /* Likenesses are relative to what they were, and a bag that has learned something else finds it familiar; the score is not. When
  * its mean over about the last ten frames falls below FADED, what is followed is not the object, however familiar it is. */
@@ -77,7 +79,8 @@ void ast_guard_see(struct ast_guard *guard, const ast_config *cfg, const struct 
     const float start = guard->lasting.start;
     const int likely = score >= cfg->score_lost, faded = !guard->lost && guard->steady < FADED;
     const int unknown = resemblance->known < cfg->recall * guard->usual.known;
-    const int vanished = start > FAITHFUL && resemblance->known < VANISHED * guard->lasting.known;
+    const int faithful = guard->trusted >= FAITHFUL_FRAMES && start > FAITHFUL;
+    const int vanished = faithful && resemblance->known < VANISHED * guard->lasting.known;
     const int doubtful = guard->lost ? unknown || resemblance->start < cfg->reacquire * start || !likely
                                      : unknown && resemblance->start < cfg->guard * start && (spread > DECIDED_SPREAD || vanished);
     if (doubtful || faded) {
