@@ -202,8 +202,8 @@ static void describe(ast_tracker *t, const ast_particles *p, int i, float *vecto
     ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
 }
 
-/* The direction in which a patch comes nearer to the models: M times the sum of mu_j - m_b, each with its say and a little more. Returns
- * the length of the difference, relative to the direction's own. */
+/* The direction in which a patch comes nearer to the models: M times the sum of mu_j - m_b, each with its say and a little more.
+ * Returns the length of the difference, relative to the direction's own. */
 static double direction_difference(const struct known *known, const float *say, const float *found) {
     const int dim = known->dim;
     double *sum = matrix_new(dim, 1), *expected = matrix_new(dim, 1), square = 0, difference = 0;
