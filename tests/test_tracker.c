@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "support_noise.h"
+#include "support_precision.h"
 #include "support_render.h"
 #include "support_tracker.h"
 #include "support_watched.h"
@@ -391,6 +392,38 @@ static void test_the_shortlist_goes_by_each_particles_vector(void) {
         TEST_ASSERT_TRUE(last >= first - 2 * slack);
     }
     free(vector);
+    ast_free(t);
+}
+
+/* What the next shortlist goes by: each model's part in the winner's weight, from the distances of the step. */
+static void test_each_model_has_its_say_in_the_winner(void) {
+    ast_config cfg = small_robust_config();
+    cfg.bag_size = 12; /* none is replaced */
+    TEST_ASSERT_TRUE(cfg.likelihood == AST_LIKELIHOOD_SCALED && cfg.vote == AST_VOTE_CONTRAST);
+    ast_tracker *t = tracker_new(&cfg, backends[0]);
+    int most = 0;
+    start(t);
+    for (int f = 1; f < 16; f++) {
+        const int models = ast_bag_count(t);
+        const ast_result r = step(t, f);
+        ast_particles p;
+        double part[12], total = 0;
+        TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+        for (int j = 0; j < models; j++) {
+            double least = INFINITY, mean = 0, sum = 0;
+            for (int i = 0; i < p.scored; i++) least = fmin(least, (double)p.distance[i * models + j]);
+            for (int i = 0; i < p.scored; i++) mean += ((double)p.distance[i * models + j] - least) / p.scored;
+            const double sigma = (double)cfg.sigma * mean;
+            for (int i = 0; i < p.scored; i++) sum += exp((least - (double)p.distance[i * models + j]) / sigma);
+            part[j] = mean * exp((least - (double)p.distance[r.best * models + j]) / sigma) / sum;
+            total += part[j];
+        }
+        for (int j = 0; j < models; j++)
+            TEST_ASSERT_DOUBLE_WITHIN(by_real(1e-5, 1e-3), part[j] / total, (double)t->bag.say[ast_bag_slot(&t->bag, j)]);
+        for (int j = models; j < ast_bag_count(t); j++) TEST_ASSERT_TRUE(t->bag.say[ast_bag_slot(&t->bag, j)] == 0.0f);
+        if (models > most) most = models;
+    }
+    TEST_ASSERT_TRUE(most > 3);
     ast_free(t);
 }
 
@@ -1149,6 +1182,7 @@ int main(void) {
     RUN_TEST(test_a_full_bag_is_selective);
     RUN_TEST(test_the_shortlist_is_scored_once_there_is_a_bag);
     RUN_TEST(test_the_shortlist_goes_by_each_particles_vector);
+    RUN_TEST(test_each_model_has_its_say_in_the_winner);
     RUN_TEST(test_a_shortlist_of_all_changes_nothing);
     RUN_TEST(test_distances_before_the_first_model);
     RUN_TEST(test_distances_are_those_of_the_geometry);
