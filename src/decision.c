@@ -66,7 +66,8 @@ static float square_to(const struct ast_cloud *cloud, int i, const struct ast_ex
 }
 
 int ast_winner(const struct ast_cloud *cloud, int count, const struct ast_expectation *expected) {
-    const float rate = expected->reach > 0.0f ? 0.5f / (expected->reach * expected->reach) : 0.0f;
+    float rate = expected->reach > 0.0f ? 0.5f / (expected->reach * expected->reach) : 0.0f;
+    if (rate > FLT_MAX) rate = FLT_MAX; /* a reach of next to nothing: zero times infinity would be no number */
     /* Relative to the nearest that weighs anything, so that the greatest product does not underflow with the others. */
     float nearest = FLT_MAX, greatest = -1.0f;
     for (int i = 0; i < count && rate > 0.0f; i++) {

@@ -8,7 +8,8 @@
 /* A configuration with all parts at work in little time: 40 particles (a full tile and a part of one), patches of 8 x 8, P = 3,
  * k = 3, W = 2; otherwise the paper preset. */
 ast_config small_config(void);
-/* The same with every part of the robust preset: a view of 64 pixels, 4 x 4 cells of gradients, 16 background vectors. */
+/* The same with every part of the robust preset: a view of 64 pixels, 4 x 4 cells of gradients, 16 background vectors,
+ * a shortlist of AST_TILE + 1. */
 ast_config small_robust_config(void);
 /* One of three: the paper's parts scored by Gram matrices, the same scored literally, and the robust preset's parts. */
 enum { SMALL_CONFIGS = 3 };

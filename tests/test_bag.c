@@ -156,6 +156,21 @@ static void test_derive_follows_the_vectors(void) {
     expect(1, 3);
 }
 
+/* A new model had no part in the last winner; what the others had is theirs still. */
+static void test_a_new_model_has_had_no_say(void) {
+    open_bag(1, 3, 1);
+    for (int slot = 0; slot < 3; slot++) bag.say[slot] = NAN; /* what was there counts for nothing */
+    for (int number = 1; number <= 8; number++) {
+        const int next = ast_bag_next(&bag);
+        add(number);
+        TEST_ASSERT_TRUE(bag.say[next] == 0.0f);
+        for (int slot = 0; slot < bag.count; slot++) {
+            TEST_ASSERT_TRUE(slot == next || bag.say[slot] == 0.1f * (float)(slot + 1));
+            bag.say[slot] = 0.1f * (float)(slot + 1);
+        }
+    }
+}
+
 static void test_clear_forgets_all(void) {
     open_bag(0, 2, 0);
     for (int number = 0; number < 3; number++) add(number);
@@ -177,6 +192,7 @@ int main(void) {
     RUN_TEST(test_vectors_are_columns_of_one_matrix);
     RUN_TEST(test_leaves_the_lead_and_the_padding_alone);
     RUN_TEST(test_derive_follows_the_vectors);
+    RUN_TEST(test_a_new_model_has_had_no_say);
     RUN_TEST(test_clear_forgets_all);
     return UNITY_END();
 }

@@ -461,6 +461,22 @@ static void test_background_goes_with_means_and_gram_scoring(void) {
     assert_accepted(&cfg, "affine, gram");
 }
 
+/* What it goes by is the likelihood ratio against the background. */
+static void test_a_shortlist_needs_a_background(void) {
+    TEST_ASSERT_EQUAL_INT(0, cfg.background);
+    cfg.shortlist = 1;
+    assert_refused(&cfg, "shortlist");
+    cfg.shortlist = cfg.particles; /* one that leaves nobody out, too: nothing hangs on the number of particles */
+    assert_refused(&cfg, "shortlist");
+    cfg.background = 8;
+    assert_accepted(&cfg, "with a background");
+    cfg.shortlist = AST_MAX_PARTICLES;
+    assert_accepted(&cfg, "longer than the cloud");
+    cfg.background = 0;
+    cfg.shortlist = 0;
+    assert_accepted(&cfg, "neither");
+}
+
 static void test_lost_is_not_above_uncertain(void) {
     cfg.score_uncertain = 0.25f;
     cfg.score_lost = 0.25f;
@@ -519,6 +535,7 @@ int main(void) {
     RUN_TEST(test_gradients_need_a_view);
     RUN_TEST(test_background_is_off_or_large_enough);
     RUN_TEST(test_background_goes_with_means_and_gram_scoring);
+    RUN_TEST(test_a_shortlist_needs_a_background);
     RUN_TEST(test_lost_is_not_above_uncertain);
     RUN_TEST(test_struct_size_is_checked_first);
     RUN_TEST(test_null_is_refused);

@@ -229,6 +229,168 @@ static void test_extreme_distances(void) {
     }
 }
 
+/* ---- The winner, where it is expected ---- */
+
+static float across[MOST_PARTICLES], down[MOST_PARTICLES];
+
+static int winner(int count, float at_x, float at_y, float reach) {
+    const struct ast_cloud cloud = {.count = MOST_PARTICLES, .x = across, .y = down, .scale = place, .weight = weight};
+    const struct ast_expectation about = {at_x, at_y, reach};
+    return ast_winner(&cloud, count, &about);
+}
+
+/* Logarithm of weight times prior. */
+static double merit(int i, float at_x, float at_y, float reach) {
+    const double dx = (double)across[i] - (double)at_x, dy = (double)down[i] - (double)at_y, r = (double)reach;
+    return log((double)weight[i]) - (dx * dx + dy * dy) / (2 * r * r);
+}
+
+static void test_winner_is_the_likeliest_under_the_prior(void) {
+    static const float reaches[] = {0.5f, 3.0f, 20.0f, 100.0f, 1e4f};
+    struct noise noise = {11};
+    for (size_t r = 0; r < sizeof reaches / sizeof reaches[0]; r++) {
+        int others = 0; /* winners that are not the greatest weight */
+        for (int trial = 0; trial < 60; trial++) {
+            const int count = trial % 3 == 0 ? MOST_PARTICLES : 40;
+            noise_fill(&noise, across, MOST_PARTICLES, 250.0, 350.0);
+            noise_fill(&noise, down, MOST_PARTICLES, 100.0, 180.0);
+            noise_fill(&noise, weight, MOST_PARTICLES, 1e-3, 1.0);
+            const float at_x = (float)noise_int(&noise, 260, 340), at_y = (float)noise_int(&noise, 90, 190);
+            const int found = winner(count, at_x, at_y, reaches[r]);
+            int best = 0, greatest = 0;
+            for (int i = 1; i < count; i++) {
+                if (merit(i, at_x, at_y, reaches[r]) > merit(best, at_x, at_y, reaches[r])) best = i;
+                if (weight[i] > weight[greatest]) greatest = i;
+            }
+            const double least = merit(best, at_x, at_y, reaches[r]);
+            TEST_ASSERT_TRUE(found >= 0 && found < count);
+            /* Squares of up to 2e4 are good to 2e-3, nothing beside the reach but at the shortest. */
+            TEST_ASSERT_TRUE(merit(found, at_x, at_y, reaches[r]) >= least - 1e-5 - 1e-2 / (double)(reaches[r] * reaches[r]));
+            others += found != greatest;
+        }
+        TEST_ASSERT_TRUE(r < 3 ? others > 30 : r < 4 || others == 0);
+    }
+}
+
+static void test_without_a_reach_the_greatest_weight_wins(void) {
+    struct noise noise = {12};
+    noise_fill(&noise, across, MOST_PARTICLES, 0.0, 500.0);
+    noise_fill(&noise, down, MOST_PARTICLES, 0.0, 500.0);
+    for (int trial = 0; trial < 50; trial++) {
+        for (int i = 0; i < MOST_PARTICLES; i++) weight[i] = (float)noise_int(&noise, 0, 20) / 20.0f; /* many are equal */
+        int best = 0;
+        for (int i = 1; i < 300; i++)
+            if (weight[i] > weight[best]) best = i;
+        weight[300] = 2.0f; /* beyond those that count */
+        TEST_ASSERT_EQUAL_INT(best, winner(300, across[best] + 400.0f, down[best], 0.0f));
+    }
+}
+
+/* The same weight at the same distance on all sides. */
+static void test_lowest_index_wins_a_tie_under_the_prior(void) {
+    static const float sides[][2] = {{9, 0}, {0, -4}, {4, 0}, {0, 4}, {-4, 0}};
+    for (int i = 0; i < 5; i++) {
+        across[i] = 50.0f + sides[i][0];
+        down[i] = 60.0f + sides[i][1];
+        weight[i] = 0.2f;
+    }
+    TEST_ASSERT_EQUAL_INT(1, winner(5, 50.0f, 60.0f, 2.0f));
+}
+
+/* A cloud so far from where the winner is expected that the prior itself is nothing in a float still has its likeliest. */
+static void test_a_cloud_far_from_what_is_expected(void) {
+    static const float places[] = {3001.0f, 3000.0f, 3000.5f}, weights[] = {0.1f, 0.4f, 0.6f};
+    for (int i = 0; i < 3; i++) {
+        across[i] = places[i];
+        down[i] = 0.0f;
+        weight[i] = weights[i];
+    }
+    TEST_ASSERT_EQUAL_INT(2, winner(3, 0.0f, 0.0f, 100.0f)); /* .6 e^-.15 */
+    TEST_ASSERT_EQUAL_INT(1, winner(3, 0.0f, 0.0f, 30.0f));  /* .6 e^-1.7 */
+    TEST_ASSERT_EQUAL_INT(1, winner(3, 0.0f, 0.0f, 1e-3f));
+    TEST_ASSERT_EQUAL_INT(1, winner(3, 0.0f, 0.0f, 1e-30f)); /* whose square is nothing in a float */
+    for (int i = 0; i < 3; i++) across[i] = 65536.0f - (float)i;
+    TEST_ASSERT_EQUAL_INT(2, winner(3, 0.0f, 65536.0f, 1.0f));
+}
+
+static void test_what_weighs_nothing_never_wins(void) {
+    struct noise noise = {13};
+    for (int trial = 0; trial < 200; trial++) {
+        noise_fill(&noise, across, 30, 0.0, 4000.0);
+        noise_fill(&noise, down, 30, 0.0, 3000.0);
+        const float reach = (float)exp(12 * noise_uniform(&noise) - 5);
+        const int alone = noise_int(&noise, 1, 29), at = noise_int(&noise, 0, 29);
+        for (int i = 0; i < 30; i++) weight[i] = 0.0f;
+        weight[alone] = 1e-37f;
+        TEST_ASSERT_EQUAL_INT(alone, winner(30, across[at], down[at], reach));
+        weight[0] = 1.0f;
+        const int found = winner(30, across[at], down[at], reach);
+        TEST_ASSERT_TRUE(found == 0 || found == alone);
+    }
+    for (int i = 0; i < 30; i++) weight[i] = 0.0f;
+    TEST_ASSERT_EQUAL_INT(0, winner(30, across[5], down[5], 10.0f));
+}
+
+/* ---- Whose doing it was ---- */
+
+static void test_attribution_is_each_models_part_of_the_weight(void) {
+    static const float sigmas[] = {0.05f, 0.5f, 20.0f};
+    struct noise noise = {14};
+    for (int way = 0; way < 12; way++) {
+        const int count = 120, models = way % 2 ? 18 : 3;
+        ast_config cfg = configured(way / 2 % 2 ? AST_LIKELIHOOD_SCALED : AST_LIKELIHOOD_FIXED, sigmas[way / 4]);
+        cfg.vote = way % 3 == 0 ? AST_VOTE_CONTRAST : AST_VOTE_EQUAL;
+        noise_fill(&noise, distance, (size_t)(count * models), 0.0, 2.0);
+        ast_weigh(distance, count, models, &cfg, weight, voice);
+        for (int i = 0; i < count; i++) {
+            float say[MOST_MODELS];
+            double part[MOST_MODELS], total = 0, sum = 0, least_power = 0;
+            for (int j = 0; j < models; j++) {
+                double least = INFINITY, mean = 0, all = 0, sigma = (double)cfg.sigma;
+                for (int k = 0; k < count; k++) least = fmin(least, (double)distance[k * models + j]);
+                for (int k = 0; k < count; k++) mean += ((double)distance[k * models + j] - least) / count;
+                if (cfg.likelihood == AST_LIKELIHOOD_SCALED) sigma *= mean;
+                for (int k = 0; k < count; k++) all += exp((least - (double)distance[k * models + j]) / sigma);
+                const double power = (least - (double)distance[i * models + j]) / sigma;
+                part[j] = (cfg.vote == AST_VOTE_CONTRAST ? mean : 1) * exp(power) / all;
+                least_power = fmin(least_power, power);
+                total += part[j];
+            }
+            for (int j = 0; j < models; j++) say[j] = NAN;
+            ast_attribute(distance + i * models, voice, models, say);
+            for (int j = 0; j < models; j++) {
+                TEST_ASSERT_DOUBLE_WITHIN(1e-6 + real_power_slack(count, least_power), part[j] / total, (double)say[j]);
+                sum += (double)say[j];
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6 * models, 1.0, sum);
+        }
+    }
+}
+
+static void test_a_model_that_speaks_alone_has_all_of_the_say(void) {
+    ast_config cfg = configured(AST_LIKELIHOOD_SCALED, 0.1f);
+    float say[3] = {NAN, NAN, NAN};
+    cfg.vote = AST_VOTE_CONTRAST;
+    for (int i = 0; i < 10; i++) {
+        distance[3 * i] = distance[3 * i + 2] = 5.0f; /* to these all particles are alike */
+        distance[3 * i + 1] = (float)i;
+    }
+    ast_weigh(distance, 10, 3, &cfg, weight, voice);
+    ast_attribute(distance, voice, 3, say);
+    TEST_ASSERT_TRUE(say[0] == 0.0f && say[1] == 1.0f && say[2] == 0.0f);
+    ast_weigh(distance, 10, 1, &cfg, weight, voice);
+    ast_attribute(distance, voice, 1, say);
+    TEST_ASSERT_TRUE(say[0] == 1.0f);
+    /* One for which no model speaks. */
+    cfg = configured(AST_LIKELIHOOD_FIXED, 1e-6f);
+    for (int i = 0; i < 20; i++) distance[i] = (float)(i / 2);
+    ast_weigh(distance, 10, 2, &cfg, weight, voice);
+    ast_attribute(distance + 2 * 9, voice, 2, say);
+    TEST_ASSERT_TRUE(say[0] == 0.0f && say[1] == 0.0f);
+    ast_attribute(distance, voice, 2, say);
+    TEST_ASSERT_TRUE(say[0] == 0.5f && say[1] == 0.5f);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_weights_are_the_likelihoods_summed_over_the_bag);
@@ -243,5 +405,12 @@ int main(void) {
     RUN_TEST(test_lowest_index_wins_a_tie);
     RUN_TEST(test_one_particle_has_all_the_weight);
     RUN_TEST(test_extreme_distances);
+    RUN_TEST(test_winner_is_the_likeliest_under_the_prior);
+    RUN_TEST(test_without_a_reach_the_greatest_weight_wins);
+    RUN_TEST(test_lowest_index_wins_a_tie_under_the_prior);
+    RUN_TEST(test_a_cloud_far_from_what_is_expected);
+    RUN_TEST(test_what_weighs_nothing_never_wins);
+    RUN_TEST(test_attribution_is_each_models_part_of_the_weight);
+    RUN_TEST(test_a_model_that_speaks_alone_has_all_of_the_say);
     return UNITY_END();
 }

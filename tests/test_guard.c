@@ -41,6 +41,7 @@ static void see_at(float likeness_to_start, float likeness_to_known, float sprea
     const struct ast_resemblance resemblance = {likeness_to_start, likeness_to_known};
     ast_guard_see(&guard, &cfg, &seen, &resemblance, spread, score);
 }
+
 /* One that scores well. */
 static void see(float likeness_to_start, float likeness_to_known, float spread) {
     see_at(likeness_to_start, likeness_to_known, spread, 0.9f);
@@ -213,6 +214,79 @@ static void test_count_of_refused_frames_ends(void) {
     TEST_ASSERT_EQUAL_INT(AST_GUARD_LONG, guard.low);
 }
 
+/* ---- The score ---- */
+
+/* Frames of this score, however familiar they look, until the object is lost; most at most. */
+static int frames_until_lost(float score, int most) {
+    int frames = 0;
+    while (!guard.lost && frames < most) {
+        see_at(0.8f, 0.9f, 0.02f, score);
+        frames++;
+    }
+    return frames;
+}
+
+static void test_a_score_that_stays_next_to_nothing_ends_in_a_loss(void) {
+    for (int f = 0; f < 60; f++) see(0.8f, 0.9f, 0.02f);
+    const struct ast_guard before = guard;
+    TEST_ASSERT_EQUAL_INT(15, frames_until_lost(0.0f, 100)); /* .9 .9^15 = .19 */
+    TEST_ASSERT_EQUAL_INT(1, guard.lost);                    /* at once, whatever lost_after says */
+    TEST_ASSERT_EQUAL_INT(1, guard.low);
+    TEST_ASSERT_EQUAL_INT(AST_LOST, ast_guard_status(&guard, &cfg, 1.0f));
+    /* The level counts: with twice as much it never ends. */
+    guard = before;
+    TEST_ASSERT_TRUE(frames_until_lost(0.18f, 100) < 60);
+    TEST_ASSERT_EQUAL_INT(1, guard.lost);
+    guard = before;
+    TEST_ASSERT_EQUAL_INT(500, frames_until_lost(0.22f, 500));
+    TEST_ASSERT_EQUAL_INT(0, guard.lost);
+}
+
+static void test_a_few_low_scores_are_no_loss(void) {
+    for (int f = 0; f < 300; f++) {
+        see_at(0.8f, 0.9f, 0.02f, f % 10 < 5 ? 0.0f : 0.9f);
+        TEST_ASSERT_EQUAL_INT(0, guard.lost);
+        TEST_ASSERT_EQUAL_INT(0, guard.low);
+    }
+    ast_guard_clear(&guard, &start);                         /* the first frames have their time, too */
+    TEST_ASSERT_EQUAL_INT(16, frames_until_lost(0.0f, 100)); /* .9^16 = .19 */
+}
+
+static void test_a_loss_does_not_end_with_a_low_score(void) {
+    get_lost(3);
+    for (int f = 0; f < 5; f++) {
+        see_at(0.8f, 0.9f, 0.02f, 0.99f * cfg.score_lost);
+        TEST_ASSERT_EQUAL_INT(1, guard.lost);
+    }
+    TEST_ASSERT_EQUAL_INT(8, guard.low);
+    see_at(0.8f, 0.9f, 0.02f, cfg.score_lost);
+    TEST_ASSERT_EQUAL_INT(0, guard.lost);
+    TEST_ASSERT_EQUAL_INT(0, guard.low);
+}
+
+static void test_means_take_no_frame_with_a_low_score(void) {
+    for (int f = 0; f < 5; f++) see(0.8f, 0.9f, 0.02f);
+    const struct ast_guard before = guard;
+    for (int f = 0; f < 3; f++) see_at(0.7f, 0.8f, 0.02f, 0.99f * cfg.score_lost);
+    TEST_ASSERT_EQUAL_INT(0, guard.low); /* trusted nevertheless */
+    TEST_ASSERT_EQUAL_MEMORY(&before.usual, &guard.usual, sizeof before.usual);
+    TEST_ASSERT_EQUAL_MEMORY(&before.lasting, &guard.lasting, sizeof before.lasting);
+    see_at(0.7f, 0.8f, 0.02f, cfg.score_lost);
+    TEST_ASSERT_TRUE(guard.usual.start < before.usual.start && guard.usual.known < before.usual.known);
+    TEST_ASSERT_TRUE(guard.lasting.start < before.lasting.start && guard.lasting.known < before.lasting.known);
+}
+
+/* What its score was while it was lost is forgotten then: another loss takes as long as the first. */
+static void test_what_is_found_again_has_its_time(void) {
+    for (int f = 0; f < 60; f++) see(0.8f, 0.9f, 0.02f);
+    (void)frames_until_lost(0.0f, 100);
+    for (int f = 0; f < 50; f++) see_at(0.1f, 0.2f, 0.3f, 0.0f);
+    TEST_ASSERT_EQUAL_INT(1, guard.lost);
+    see(0.8f, 0.9f, 0.02f);
+    TEST_ASSERT_EQUAL_INT(0, guard.lost);
+    TEST_ASSERT_EQUAL_INT(16, frames_until_lost(0.0f, 100));
+}
+
 /* ---- Search ---- */
 
 static void place_cloud(void) {
@@ -286,6 +360,11 @@ int main(void) {
     RUN_TEST(test_only_what_is_like_the_start_takes_a_place);
     RUN_TEST(test_lost_after_refused_frames_until_both_likenesses_return);
     RUN_TEST(test_count_of_refused_frames_ends);
+    RUN_TEST(test_a_score_that_stays_next_to_nothing_ends_in_a_loss);
+    RUN_TEST(test_a_few_low_scores_are_no_loss);
+    RUN_TEST(test_a_loss_does_not_end_with_a_low_score);
+    RUN_TEST(test_means_take_no_frame_with_a_low_score);
+    RUN_TEST(test_what_is_found_again_has_its_time);
     RUN_TEST(test_search_leaves_a_cloud_alone_until_lost);
     RUN_TEST(test_half_of_a_lost_cloud_searches_ever_wider);
     return UNITY_END();

@@ -232,9 +232,11 @@ static void test_distances_are_gone_after_restore(void) {
     ast_particles particles;
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &particles));
     TEST_ASSERT_NOT_NULL(particles.distance);
+    TEST_ASSERT_EQUAL_INT(cfg.particles, particles.scored);
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_restore(t, saved.bytes, saved.size));
     TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &particles));
     TEST_ASSERT_NULL(particles.distance);
+    TEST_ASSERT_EQUAL_INT(0, particles.scored);
     saved_free(&saved);
     ast_free(t);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "support_noise.h"
+#include "support_precision.h"
 #include "support_render.h"
 #include "support_tracker.h"
 #include "support_watched.h"
@@ -65,6 +66,13 @@ static ast_config variant(int which) {
     return cfg;
 }
 
+/* Of the particles those that are scored come first, and only they weigh anything. */
+static void assert_only_the_scored_weigh(const ast_particles *p, const ast_result *r) {
+    TEST_ASSERT_TRUE(p->scored >= 1 && p->scored <= p->count);
+    TEST_ASSERT_TRUE(r->best >= 0 && r->best < p->scored);
+    for (int i = p->scored; i < p->count; i++) TEST_ASSERT_TRUE_MESSAGE(p->weight[i] == 0.0f, "weight without a score");
+}
+
 /* Whatever the frame shows: numbers, and in their ranges. */
 static void assert_sane(const ast_tracker *t, const ast_result *r, const ast_frame *frame) {
     ast_particles p;
@@ -79,7 +87,7 @@ static void assert_sane(const ast_tracker *t, const ast_result *r, const ast_fra
     TEST_ASSERT_TRUE(r->scale >= cfg.scale_min && r->scale <= cfg.scale_max);
     TEST_ASSERT_TRUE(r->effective_particles >= 0.999f && r->effective_particles <= 1.001f * (float)cfg.particles);
     TEST_ASSERT_TRUE(r->status >= AST_TRACKING && r->status <= AST_LOST);
-    TEST_ASSERT_TRUE(r->best >= 0 && r->best < cfg.particles);
+    assert_only_the_scored_weigh(&p, r);
     for (int i = 0; i < p.count; i++) {
         TEST_ASSERT_TRUE_MESSAGE(p.x[i] >= 0 && p.x[i] <= (float)frame->width, "a particle beside the frame");
         TEST_ASSERT_TRUE_MESSAGE(p.y[i] >= 0 && p.y[i] <= (float)frame->height, "a particle above or below the frame");
@@ -321,6 +329,127 @@ static void test_a_full_bag_is_selective(void) {
             free(known);
             ast_free(t);
         }
+    }
+}
+
+/* ---- The shortlist ---- */
+
+/* The length of the shortlist where the bag had a model when the frame came, else all. */
+static void test_the_shortlist_is_scored_once_there_is_a_bag(void) {
+    static const int lengths[] = {0, 1, 7, AST_TILE, AST_TILE + 8, AST_MAX_PARTICLES};
+    for (size_t l = 0; l < sizeof lengths / sizeof lengths[0]; l++) {
+        ast_config cfg = small_robust_config();
+        cfg.shortlist = lengths[l];
+        ast_tracker *t = tracker_new(&cfg, backends[0]);
+        int without = 0;
+        start(t);
+        for (int f = 1; f < 9; f++) {
+            const int models = ast_bag_count(t), whole = models == 0 || lengths[l] == 0 || lengths[l] > cfg.particles;
+            ast_particles p;
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+            TEST_ASSERT_TRUE(f > 1 || (p.scored == 0 && p.distance == NULL));
+            const ast_result r = step(t, f);
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+            TEST_ASSERT_EQUAL_INT(cfg.particles, p.count);
+            TEST_ASSERT_EQUAL_INT(whole ? cfg.particles : lengths[l], p.scored);
+            assert_only_the_scored_weigh(&p, &r);
+            without += models == 0;
+        }
+        TEST_ASSERT_TRUE(without > 0 && without < 8);
+        ast_free(t);
+    }
+}
+
+/* The shortlist holds the particles that go farthest along the direction, by an inner product with each one's own vector. */
+static void test_the_shortlist_goes_by_each_particles_vector(void) {
+    ast_config cfg = small_robust_config();
+    cfg.shortlist = 9;
+    ast_tracker *t = tracker_new(&cfg, backends[0]);
+    float *vector = malloc((size_t)t->dim * sizeof *vector);
+    TEST_ASSERT_NOT_NULL(vector);
+    start(t);
+    for (int f = 1; f < 12; f++) {
+        const int models = ast_bag_count(t);
+        ast_particles p;
+        double last = INFINITY, first = -INFINITY, size = 0;
+        (void)step(t, f);
+        if (models == 0) continue;
+        TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+        for (int d = 0; d < t->dim; d++) size += (double)t->direction[d] * (double)t->direction[d];
+        const double slack = 1e-5 * sqrt(size); /* vectors are about of length 1 */
+        for (int i = 0; i < p.count; i++) {
+            const float w = t->box_width * p.scale[i], h = t->box_height * p.scale[i];
+            const ast_box box = {p.x[i] - 0.5f * w, p.y[i] - 0.5f * h, w, h}, window = ast_view_box(&t->view, &box);
+            double along = 0;
+            ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
+            for (int d = 0; d < t->dim; d++) along += (double)t->direction[d] * (double)vector[d];
+            TEST_ASSERT_DOUBLE_WITHIN(slack, along, (double)t->promise[i]);
+            if (i < p.scored)
+                last = fmin(last, along);
+            else
+                first = fmax(first, along);
+        }
+        TEST_ASSERT_TRUE(last >= first - 2 * slack);
+    }
+    free(vector);
+    ast_free(t);
+}
+
+/* What the next shortlist goes by: each model's part in the winner's weight, from the distances of the step. */
+static void test_each_model_has_its_say_in_the_winner(void) {
+    ast_config cfg = small_robust_config();
+    cfg.bag_size = 12; /* none is replaced */
+    TEST_ASSERT_TRUE(cfg.likelihood == AST_LIKELIHOOD_SCALED && cfg.vote == AST_VOTE_CONTRAST);
+    ast_tracker *t = tracker_new(&cfg, backends[0]);
+    int most = 0;
+    start(t);
+    for (int f = 1; f < 16; f++) {
+        const int models = ast_bag_count(t);
+        const ast_result r = step(t, f);
+        ast_particles p;
+        double part[12], total = 0;
+        TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+        for (int j = 0; j < models; j++) {
+            double least = INFINITY, mean = 0, sum = 0;
+            for (int i = 0; i < p.scored; i++) least = fmin(least, (double)p.distance[i * models + j]);
+            for (int i = 0; i < p.scored; i++) mean += ((double)p.distance[i * models + j] - least) / p.scored;
+            const double sigma = (double)cfg.sigma * mean;
+            for (int i = 0; i < p.scored; i++) sum += exp((least - (double)p.distance[i * models + j]) / sigma);
+            part[j] = mean * exp((least - (double)p.distance[r.best * models + j]) / sigma) / sum;
+            total += part[j];
+        }
+        for (int j = 0; j < models; j++)
+            TEST_ASSERT_DOUBLE_WITHIN(by_real(1e-5, 1e-3), part[j] / total, (double)t->bag.say[ast_bag_slot(&t->bag, j)]);
+        for (int j = models; j < ast_bag_count(t); j++) TEST_ASSERT_TRUE(t->bag.say[ast_bag_slot(&t->bag, j)] == 0.0f);
+        if (models > most) most = models;
+    }
+    TEST_ASSERT_TRUE(most > 3);
+    ast_free(t);
+}
+
+/* With as many places as particles, or more, it is as if there were none. */
+static void test_a_shortlist_of_all_changes_nothing(void) {
+    for (int more = 0; more <= 5; more += 5) {
+        ast_config cfg = small_robust_config();
+        cfg.shortlist = 0;
+        ast_tracker *plain = tracker_new(&cfg, backends[0]);
+        cfg.shortlist = cfg.particles + more;
+        ast_tracker *listed = tracker_new(&cfg, backends[0]);
+        start(plain);
+        start(listed);
+        for (int f = 1; f < 14; f++) {
+            const ast_result a = step(plain, f), b = step(listed, f);
+            ast_particles p, q;
+            TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(plain, &p));
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(listed, &q));
+            TEST_ASSERT_TRUE(p.models == q.models && p.scored == q.scored);
+            TEST_ASSERT_EQUAL_MEMORY(p.distance, q.distance, (size_t)(p.scored * p.models) * sizeof(float));
+            TEST_ASSERT_EQUAL_MEMORY(p.weight, q.weight, (size_t)p.count * sizeof(float));
+            TEST_ASSERT_EQUAL_MEMORY(p.x, q.x, (size_t)p.count * sizeof(float));
+        }
+        ast_free(plain);
+        ast_free(listed);
     }
 }
 
@@ -1051,6 +1180,10 @@ int main(void) {
     RUN_TEST(test_light_does_not_matter);
     RUN_TEST(test_status_tells_when_the_object_is_gone);
     RUN_TEST(test_a_full_bag_is_selective);
+    RUN_TEST(test_the_shortlist_is_scored_once_there_is_a_bag);
+    RUN_TEST(test_the_shortlist_goes_by_each_particles_vector);
+    RUN_TEST(test_each_model_has_its_say_in_the_winner);
+    RUN_TEST(test_a_shortlist_of_all_changes_nothing);
     RUN_TEST(test_distances_before_the_first_model);
     RUN_TEST(test_distances_are_those_of_the_geometry);
     RUN_TEST(test_history_holds_the_last_winners);

@@ -118,6 +118,30 @@ static void test_resolution_is_the_objects(void) {
     free(pixels);
 }
 
+/* What of a region lies beyond the frame takes none of the pixels: it is shown as its part inside would be. */
+static void test_resolution_is_that_of_the_part_inside(void) {
+    uint8_t *pixels = noise_pixels(400 * 300, 14);
+    const ast_frame frame = {pixels, 400, 300, 400};
+    static const ast_box beyond[] = {{-1000, -500, 1100, 700},
+                                     {300, 250, 900, 3000},
+                                     {-2000, 100, 5000, 60},
+                                     {50, -700, 300, 2000}},
+                         inside[] = {{0, 0, 100, 200}, {300, 250, 100, 50}, {0, 100, 400, 60}, {50, 0, 300, 300}};
+    static const float longest[] = {200, 100, 400, 300};
+    const ast_box object = {0, 0, 20, 15};
+    for (int r = 0; r < 4; r++) {
+        ast_view_show(&view, &frame, &inside[r], &object);
+        const float pixel = view.pixel;
+        const ast_frame image = view.image;
+        ast_view_show(&view, &frame, &beyond[r], &object);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5f, fmaxf(1, longest[r] / (SIDE - 2)), view.pixel);
+        TEST_ASSERT_TRUE(view.pixel == pixel);
+        TEST_ASSERT_TRUE(view.origin_x == inside[r].x && view.origin_y == inside[r].y);
+        TEST_ASSERT_TRUE(view.image.width == image.width && view.image.height == image.height);
+    }
+    free(pixels);
+}
+
 /* Any region: never a pixel finer than the frame's, never more pixels than the view's sides, and all of the region that is in the
  * frame (of one beyond it, the nearest pixel). */
 static void test_any_region_is_covered_and_fits(void) {
@@ -330,6 +354,7 @@ int main(void) {
     RUN_TEST(test_without_a_view_the_frame_is_shown);
     RUN_TEST(test_a_small_object_is_shown_by_the_frame_itself);
     RUN_TEST(test_resolution_is_the_objects);
+    RUN_TEST(test_resolution_is_that_of_the_part_inside);
     RUN_TEST(test_any_region_is_covered_and_fits);
     RUN_TEST(test_boxes_go_there_and_back);
     RUN_TEST(test_pixels_are_the_resampled_window);

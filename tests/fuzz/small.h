@@ -26,6 +26,7 @@ static inline ast_config small_kind(int which) {
         cfg.gradient_cells = 2;
         cfg.background = 8;
         cfg.background_refresh = 2;
+        cfg.shortlist = 4;
     }
     REQUIRE(ast_config_check(&cfg, NULL) == AST_OK);
     return cfg;
@@ -42,13 +43,14 @@ static inline void require_sane(const ast_tracker *t, const ast_result *r) {
     REQUIRE(r->score >= 0 && r->score <= 1);
     REQUIRE(r->effective_particles >= 0.999f && r->effective_particles <= 1.001f * (float)cfg.particles);
     REQUIRE(r->status >= AST_TRACKING && r->status <= AST_LOST);
-    REQUIRE(r->best >= 0 && r->best < p.count && p.count == cfg.particles);
+    REQUIRE(p.count == cfg.particles && p.scored >= 1 && p.scored <= p.count && r->best >= 0 && r->best < p.scored);
     for (int32_t i = 0; i < p.count; i++) {
         REQUIRE(isfinite(p.x[i]) && isfinite(p.y[i]) && p.scale[i] >= cfg.scale_min && p.scale[i] <= cfg.scale_max);
         REQUIRE(p.weight[i] >= 0 && p.weight[i] <= 1.0001f);
         sum += (double)p.weight[i];
     }
     REQUIRE(fabs(sum - 1) < 1e-4);
+    for (int32_t i = p.scored; i < p.count; i++) REQUIRE(p.weight[i] == 0);
     for (int32_t i = 0; i < p.scored * p.models; i++) REQUIRE(isfinite(p.distance[i]));
 }
 
