@@ -141,8 +141,7 @@ typedef struct ast_config {
 
     /* Particles (paper section 2.1) */
     int32_t particles; /* N, 1 .. AST_MAX_PARTICLES */
-    int32_t
-        shortlist; /* of them scored in full, the likeliest at a glance at the grey patch; 0 or N: all (the paper's); needs a background */
+    int32_t shortlist; /* of them scored in full, the likeliest at a glance; 0 or N: all (the paper's); needs a background */
     float walk_x;      /* standard deviation of the random walk in x, pixels a frame, 0 .. 1000 */
     float walk_y;      /* the same in y */
     float walk_scale;  /* the same for the natural logarithm of the scale, 0 .. 1 */

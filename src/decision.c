@@ -7,8 +7,8 @@
 
 enum { BLOCK = 64 };
 
-/* A block of likelihoods for model j, from particle `first` on. Differences to the least: the nearest particle's likelihood is 1, so
- * that sums neither under- nor overflow. Returns how many they are. */
+/* A block of likelihoods for model j, from particle `first` on. Differences to the least: the nearest particle's likelihood is 1,
+ * so that sums neither under- nor overflow. Returns how many they are. */
 static int likelihoods(const struct ast_kernels *kernels, const float *distance, int first, int count, int models, int j,
                        const struct ast_voice *voice, ast_real *likelihood) {
     const int used = count - first < BLOCK ? count - first : BLOCK;

@@ -21,8 +21,8 @@ struct ast_expectation {
 };
 
 /* distance: count x models, row-major. weight (count) receives p(A_i | bag) = sum over j of the configured likelihoods, each
- * normalised over the particles, times the model's vote (cfg->vote); the votes, and so the weights, sum to 1. voice (models): what was
- * added up. */
+ * normalised over the particles, times the model's vote (cfg->vote); the votes, and so the weights, sum to 1. voice (models): what
+ * was added up. */
 void ast_weigh(const float *distance, int count, int models, const ast_config *cfg, float *weight, struct ast_voice *voice);
 /* The index of the greatest weight times prior among the first `count` particles, the lowest on a tie. */
 int ast_winner(const struct ast_cloud *cloud, int count, const struct ast_expectation *expected);

@@ -120,8 +120,8 @@ struct ast_scoring {
                         struct ast_arena *arena);
     /* Once a frame, then for each tile. 0, or the backend's failure. */
     int (*prepare)(union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene);
-    /* Once the frame is prepared: the direction along which a patch comes nearer to the models, each of them with its say (bag->count,
-     * >= 0), to first order; its first `length` floats. Needs a background; NULL where that is not scored. */
+    /* Once the frame is prepared: the direction along which a patch comes nearer to the models, each of them with its say
+     * (bag->count, >= 0), to first order; its first `length` floats. Needs a background; NULL where that is not scored. */
     void (*aim)(const union ast_scratch *scratch, const struct ast_scene *scene, const float *say, int length, float *direction);
     /* patches: count <= AST_TILE columns of the bag's stride, destroyed. distance: count x bag->count, row-major. */
     int (*tile)(const union ast_scratch *scratch, union ast_tile_scratch *own, const struct ast_scene *scene, float *patches,

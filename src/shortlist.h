@@ -1,4 +1,4 @@
-/* Which particles are scored in full: most are so far from the object that one inner product says so. */
+/* Which particles are scored in full: most are so far from the object that an inner product with the grey patch alone says so. */
 #ifndef AST_SHORTLIST_H
 #define AST_SHORTLIST_H
 
@@ -10,8 +10,9 @@ static inline int ast_shortlist_length(const ast_config *cfg) {
     return cfg->shortlist > 0 && cfg->shortlist < cfg->particles ? cfg->shortlist : cfg->particles;
 }
 
-/* Brings the `wanted` particles (1 .. count) of the greatest promise to the front of the cloud, in no particular order; of equal ones
- * those with the lower index. promise (cloud->count) is carried along; heap: room for `wanted`. Takes count log(wanted) steps at most. */
+/* Brings the `wanted` particles (1 .. count) of the greatest promise to the front of the cloud, in no particular order; of equal
+ * ones those with the lower index. promise (cloud->count) is carried along; heap: room for `wanted`. Takes count log(wanted) steps
+ * at most. */
 void ast_shortlist(struct ast_cloud *cloud, float *promise, int wanted, float *heap);
 
 #endif

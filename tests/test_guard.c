@@ -104,6 +104,15 @@ static void test_only_a_frame_unlike_all_that_is_known_is_refused(void) {
     TEST_ASSERT_EQUAL_INT(0, guard.low);
     TEST_ASSERT_EQUAL_FLOAT(0.8f, guard.usual.start);
     TEST_ASSERT_EQUAL_FLOAT(0.9f, guard.usual.known);
+    const struct ast_guard met = guard;
+    see(0.2f, 0.3f, 0.05f); /* one that has just been met may turn */
+    TEST_ASSERT_EQUAL_INT(0, guard.low);
+    guard = met;
+    for (int f = 1; f < 49; f++) see(0.8f, 0.9f, 0.3f);
+    see(0.2f, 0.3f, 0.05f);
+    TEST_ASSERT_EQUAL_INT(0, guard.low);
+    guard = met;
+    for (int f = 1; f < 50; f++) see(0.8f, 0.9f, 0.3f);
     const struct ast_guard before = guard;
     see(0.2f, 0.85f, 0.3f); /* it has turned: a model knows it */
     TEST_ASSERT_EQUAL_INT(0, guard.low);
