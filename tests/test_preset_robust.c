@@ -347,6 +347,34 @@ static void test_models_are_about_the_backgrounds_mean(void) {
     ast_free(t);
 }
 
+/* Slides out of the frame until more than half of it is outside, and stays there. The bag has seen that come and finds it familiar; the
+ * score has not, and says in the end that what is left is not the object. */
+static void test_what_stays_beyond_the_border_is_lost(void) {
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        struct render ground;
+        ast_result r;
+        int familiar = 0, lost = 0;
+        render_open(&ground, WIDTH, HEIGHT, seed);
+        ast_box box = {120, 60, 34, 27};
+        ast_frame frame = render_frame(&ground, &box);
+        cfg.seed = seed;
+        ast_tracker *t = tracker_new(&cfg, backends[0]);
+        TEST_ASSERT_EQUAL_INT(AST_OK, ast_start(t, &frame, &box));
+        for (int f = 1; f < 100 && !lost; f++) {
+            box.x = fminf(120.0f + 1.2f * (float)f, WIDTH - 16.0f);
+            frame = render_frame(&ground, &box);
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_step(t, &frame, &r));
+            TEST_ASSERT_TRUE(box.x + box.w > WIDTH || r.status == AST_TRACKING);
+            lost = r.status == AST_LOST;
+            familiar += box.x + 0.5f * box.w > WIDTH && !lost;
+        }
+        TEST_ASSERT_EQUAL_INT(1, lost);
+        TEST_ASSERT_TRUE(familiar > 3);
+        ast_free(t);
+        render_close(&ground);
+    }
+}
+
 /* ---- Going on, starting again ---- */
 
 /* Saved in the middle of a sequence and restored elsewhere: the same bits from there on. */
@@ -444,6 +472,7 @@ int main(void) {
     RUN_TEST(test_background_is_drawn_and_refreshed);
     RUN_TEST(test_background_is_not_the_object);
     RUN_TEST(test_models_are_about_the_backgrounds_mean);
+    RUN_TEST(test_what_stays_beyond_the_border_is_lost);
     RUN_TEST(test_saved_and_restored_in_the_middle);
     RUN_TEST(test_a_second_start_forgets_the_first);
     RUN_TEST(test_frames_without_a_picture);

@@ -42,6 +42,26 @@ def test_distances_are_there_from_the_first_update() -> None:
     assert after.distance.shape == (64, 1)
 
 
+def test_distances_are_the_shortlists() -> None:
+    tracker = Tracker("robust", particles=64, shortlist=20)
+    tracker.init(FRAMES[0], BOXES[0])
+    rows = []
+    for frame in FRAMES[1:9]:
+        models = len(tracker.bag)
+        result = tracker.update(frame)
+        particles = tracker.particles
+        assert particles.distance is not None
+        scored = len(particles.distance)
+        assert particles.distance.shape == (20 if models else 64, max(models, 1))
+        assert particles.weight.shape == (64,)
+        assert particles.weight[:scored].sum() == pytest.approx(1, abs=1e-5)
+        assert not particles.weight[scored:].any()
+        assert result.best < scored
+        assert result.distance == particles.distance[result.best].min()
+        rows.append(scored)
+    assert set(rows) == {20, 64}  # the bag has its first model on the way
+
+
 def test_history_is_oldest_first() -> None:
     tracker = tracked(7)
     before = [vector.copy() for vector in tracker.history]

@@ -21,9 +21,9 @@ class Particles:
         y: (N,) the same, downwards.
         scale: (N,) relative to the first box.
         weight: (N,) they sum to 1.
-        distance: (scored, models) the last update's distances to each model of the bag (paper eq. 2), of the first particles: as many
-            as the shortlist, the others weigh nothing; N without one and before the bag has a model. None before the first update
-            and after a failed one.
+        distance: (scored, models) the last update's distances to each model of the bag (paper eq. 2), of the first particles: as
+            many as the shortlist, the others weigh nothing; N without one and before the bag has a model. None before the first
+            update and after a failed one.
         centre: x and y of the last estimate's centre, pixels.
         size: width and height of the object at scale 1, pixels.
     """
