@@ -391,7 +391,7 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
 #define AST_MEM_SIZE_PAPER AST_MEM_SIZE(600, 0, 0, 32, 32, 0, 3, 3, 10, 0, 1)
 #define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 96, 128, 16, 16, 12, 3, 2, 18, 40, 1)
 #define AST_MEM_SIZE_TINY AST_MEM_SIZE(92, 0, 48, 16, 16, 0, 2, 1, 5, 8, 1)
-#define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 64, 96, 12, 12, 8, 3, 2, 10, 32, 1)
+#define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 48, 96, 12, 12, 8, 3, 2, 10, 32, 1)
 
 /* What it is made of: no business of a program. Bytes of the library's own structs at most, which it checks as it is compiled; then
  * the arrays, each on a boundary of 64 bytes, in the order of ast_init. N, S, v, pw, ph, c, P, n, k, b, T: the fields above. */

@@ -209,7 +209,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
     case AST_PRESET_COMPACT: /* chosen by memory, time and accuracy: docs/firmware.md */
         memcpy(cfg, &robust, sizeof *cfg);
         cfg->particles = 200;
-        cfg->shortlist = 64;
+        cfg->shortlist = 48;
         cfg->view = 96;
         cfg->patch_width = 12;
         cfg->patch_height = 12;
