@@ -389,7 +389,7 @@ AST_API AST_CHECKED int ast_subspace_distance(const ast_subspace *a, const ast_s
 
 /* The presets as they are. */
 #define AST_MEM_SIZE_PAPER AST_MEM_SIZE(600, 0, 0, 32, 32, 0, 3, 3, 10, 0, 1)
-#define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 96, 128, 16, 16, 12, 3, 2, 18, 40, 1)
+#define AST_MEM_SIZE_ROBUST AST_MEM_SIZE(350, 160, 128, 16, 16, 12, 3, 2, 18, 40, 1)
 #define AST_MEM_SIZE_TINY AST_MEM_SIZE(92, 0, 48, 16, 16, 0, 2, 1, 5, 8, 1)
 #define AST_MEM_SIZE_COMPACT AST_MEM_SIZE(200, 48, 96, 12, 12, 8, 3, 2, 10, 32, 1)
 

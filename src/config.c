@@ -138,7 +138,7 @@ static const ast_config paper = {
 static const ast_config robust = {
     .struct_size = sizeof(ast_config),
     .particles = 350,
-    .shortlist = 96,
+    .shortlist = 160,
     .walk_x = 8.0f,
     .walk_y = 8.0f,
     .walk_scale = 0.01f,
@@ -168,7 +168,7 @@ static const ast_config robust = {
     .ridge = 0.1f,
     .background_ratio = 1.0f,
     .alpha = 10.0f,
-    .sigma = 0.15f,
+    .sigma = 0.13f,
     .likelihood = AST_LIKELIHOOD_SCALED,
     .vote = AST_VOTE_CONTRAST,
     .scoring = AST_SCORING_GRAM,
@@ -210,6 +210,7 @@ int ast_config_preset(ast_config *cfg, int preset) {
         memcpy(cfg, &robust, sizeof *cfg);
         cfg->particles = 200;
         cfg->shortlist = 48;
+        cfg->sigma = 0.15f;
         cfg->view = 96;
         cfg->patch_width = 12;
         cfg->patch_height = 12;
@@ -254,6 +255,9 @@ int ast_config_check(const ast_config *cfg, const char **field) {
     if (offender == NULL && cfg->background_refresh > cfg->background) offender = "background_refresh";
     if (offender == NULL && cfg->background > 0 && cfg->model == AST_MODEL_LINEAR) offender = "model";
     if (offender == NULL && cfg->background > 0 && cfg->scoring != AST_SCORING_GRAM) offender = "scoring";
+#ifdef AST_NO_GRADIENT
+    if (offender == NULL && cfg->gradient_weight > 0.0f) offender = "gradient_weight";
+#endif
 #ifdef AST_NO_LITERAL
     if (offender == NULL && cfg->scoring == AST_SCORING_LITERAL) offender = "scoring";
 #endif

@@ -25,6 +25,7 @@ static void patch_vector(const struct ast_features *f, struct ast_features_scrat
     for (int i = 0; weight != 1.0f && i < length; i++) out[i] *= weight;
 }
 
+#ifndef AST_NO_GRADIENT
 static int gradient_length(const ast_config *cfg) {
     return cfg->gradient_weight > 0.0f ? cfg->gradient_cells * cfg->gradient_cells * AST_DIRECTIONS : 0;
 }
@@ -40,10 +41,13 @@ static void gradient_vector(const struct ast_features *f, struct ast_features_sc
     (void)image;
     ast_gradient_cells(&f->gradient, window, out);
 }
+#endif
 
 static const struct part parts[] = {
     {patch_length, NULL, patch_scratch_layout, NULL, patch_vector},
+#ifndef AST_NO_GRADIENT
     {gradient_length, gradient_layout, NULL, gradient_prepare, gradient_vector},
+#endif
 };
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
@@ -61,7 +65,8 @@ static const struct part *first_part(const ast_config *cfg) {
 }
 
 int ast_features_glance_length(const ast_config *cfg) {
-    return first_part(cfg)->length(cfg);
+    const struct part *part = first_part(cfg);
+    return part->length(cfg);
 }
 
 void ast_features_layout(struct ast_features *f, const ast_config *cfg, struct ast_arena *arena) {
@@ -92,5 +97,6 @@ void ast_features_vector(const struct ast_features *f, struct ast_features_scrat
 
 void ast_features_glance(const struct ast_features *f, struct ast_features_scratch *own, const ast_frame *image,
                          const ast_box *window, float *vector) {
-    first_part(&f->cfg)->vector(f, own, image, window, vector);
+    const struct part *part = first_part(&f->cfg);
+    part->vector(f, own, image, window, vector);
 }

@@ -70,7 +70,7 @@ struct ast_kernels {
     /* A patch from 0 .. 255 to its normalised form (AST_NORMALISE_*). */
     void (*normalise)(float *patch, int length, int normalisation);
 
-    /* The maps of an image, for cells of about this size in it. */
+    /* The maps of an image, for cells of about this size in it; NULL in a build with AST_NO_GRADIENT, as the next one. */
     void (*maps)(struct ast_gradient *g, const ast_frame *image, float cell_x, float cell_y);
     /* The cells of a window of the image whose maps g holds. */
     void (*cells)(const struct ast_gradient *g, const ast_box *window, float *out);

@@ -14,7 +14,9 @@
 
 #include "patch_kernel.h"
 
+#ifndef AST_NO_GRADIENT
 #include "gradient_kernel.h"
+#endif
 
 #include "score_kernel.h"
 
@@ -31,8 +33,10 @@ const struct ast_kernels AST_KERNELS = {
     .axis = axis,
     .rows = rows,
     .normalise = normalise,
+#ifndef AST_NO_GRADIENT
     .maps = maps,
     .cells = cells,
+#endif
     .project = project,
     .decompose = decompose,
     .pair = pair,

@@ -7,13 +7,17 @@ QEMU_ARM ?= qemu-system-arm
 
 # A variant: processor, FPU, the type of ast_real, emulated board. The processors with a single-precision FPU compute in float
 # alone.
-firmware_variants := m7-double m7-single m4-single
+# m7-tiny is for patches alone, as the tiny preset has them: without the gradients' code.
+firmware_variants := m7-double m7-single m7-tiny m4-single
 m7-double_cpu := -mcpu=cortex-m7 -mfpu=fpv5-d16
 m7-double_real := double
 m7-double_board := mps2-an500
 m7-single_cpu := -mcpu=cortex-m7 -mfpu=fpv5-sp-d16
 m7-single_real := float
 m7-single_board := mps2-an500
+m7-tiny_cpu := $(m7-single_cpu) -DAST_NO_GRADIENT
+m7-tiny_real := float
+m7-tiny_board := mps2-an500
 m4-single_cpu := -mcpu=cortex-m4 -mfpu=fpv4-sp-d16
 m4-single_real := float
 m4-single_board := mps2-an386
@@ -93,15 +97,18 @@ FIRMWARE_CODE ?= 32768
 # colours) the linker leaves out.
 firmware_calls := ast_config_preset ast_mem_size ast_init ast_start ast_step ast_free
 firmware_lib_objects = $(call firmware_objects,m7-single,)
+firmware_tiny_objects = $(call firmware_objects,m7-tiny,)
 
 .PHONY: size-firmware stack-firmware link-firmware test-cross test-cross-short
-size-firmware: $(firmware_lib_objects) ## code and constants on a Cortex-M7; fails above FIRMWARE_CODE
-	@$(ARM_PREFIX)ld --gc-sections --unresolved-symbols=ignore-all -e ast_step $(firmware_calls:%=-u %) -o $(firmware_dir)/core.elf \
-	    $(firmware_lib_objects)
-	@$(ARM_PREFIX)size $(firmware_lib_objects) $(firmware_dir)/core.elf | awk -v most=$(FIRMWARE_CODE) 'NR > 1 { \
-	    if ($$6 ~ /core[.]elf$$/) core = $$1; else { all += $$1; data += $$2 + $$3 } } \
-	    END { printf "Cortex-M7, -Os: code and constants %d bytes, without save, restore and diagnostics %d (at most %d), data %d\n", \
-	    all, core, most, data; exit core == 0 || core > most || data > 0 }'
+# $(call firmware_core,objects,file): what a program that tracks has of them
+firmware_core = $(ARM_PREFIX)ld --gc-sections --unresolved-symbols=ignore-all -e ast_step $(firmware_calls:%=-u %) -o $(2) $(1)
+size-firmware: $(firmware_lib_objects) $(firmware_tiny_objects) ## code and constants on a Cortex-M7; fails above FIRMWARE_CODE
+	@$(call firmware_core,$(firmware_lib_objects),$(firmware_dir)/core.elf)
+	@$(call firmware_core,$(firmware_tiny_objects),$(firmware_dir)/tiny.elf)
+	@$(ARM_PREFIX)size $(firmware_lib_objects) $(firmware_dir)/core.elf $(firmware_dir)/tiny.elf | awk -v most=$(FIRMWARE_CODE) 'NR > 1 { \
+	    if ($$6 ~ /core[.]elf$$/) core = $$1; else if ($$6 ~ /tiny[.]elf$$/) tiny = $$1; else { all += $$1; data += $$2 + $$3 } } \
+	    END { printf "Cortex-M7, -Os: code and constants %d bytes, without save, restore and diagnostics %d, and without gradients " \
+	    "%d (at most %d), data %d\n", all, core, tiny, most, data; exit core == 0 || tiny == 0 || tiny > most || data > 0 }'
 
 stack-firmware: ## the same for the stack; fails above FIRMWARE_STACK
 	+@$(MAKE) --no-print-directory BUILDDIR=$(BUILDDIR)/stack-m7 CC=$(ARM_PREFIX)gcc OBJDUMP=$(ARM_PREFIX)objdump BACKEND=builtin \

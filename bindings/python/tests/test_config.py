@@ -65,7 +65,7 @@ def test_fields_that_contradict_each_other_are_named() -> None:
 def test_an_unknown_field_is_named_with_its_neighbours() -> None:
     with pytest.raises(TypeError, match="unknown configuration field 'particels': did you mean particles"):
         Tracker(particels=5)
-    with pytest.raises(TypeError, match="unknown configuration field 'zzz': there are particles, walk_x"):
+    with pytest.raises(TypeError, match="unknown configuration field 'zzz': there are particles, shortlist, walk_x"):
         Tracker(zzz=5)
     with pytest.raises(TypeError, match="unknown configuration field 'struct_size'"):
         Tracker(struct_size=5)

@@ -30,7 +30,7 @@ print("went on")
 """
 LARGEST = (
     "asttrack.Tracker(particles=65536, bag_size=64, patch_width=64, patch_height=64, history=15, basis_size=8, "
-    "view=256, gradient_cells=16, background=128)"
+    "view=256, gradient_cells=16, background=128, shortlist=0)"
 )
 
 
