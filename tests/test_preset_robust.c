@@ -347,8 +347,8 @@ static void test_models_are_about_the_backgrounds_mean(void) {
     ast_free(t);
 }
 
-/* Slides out of the frame until more than half of it is outside, and stays there. The bag has seen that come and finds it familiar; the
- * score has not, and says in the end that what is left is not the object. */
+/* Slides out of the frame until more than half of it is outside, and stays there. The bag has seen that come and finds it familiar;
+ * the score has not, and says in the end that what is left is not the object. */
 static void test_what_stays_beyond_the_border_is_lost(void) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct render ground;

@@ -360,39 +360,45 @@ static void test_the_shortlist_is_scored_once_there_is_a_bag(void) {
     }
 }
 
-/* The shortlist holds the particles that go farthest along the direction, by an inner product with each one's own vector. */
+/* The shortlist holds the particles that go farthest along the direction, by an inner product with the head of each one's own
+ * vector: its grey patch, or its gradients where it has none. */
 static void test_the_shortlist_goes_by_each_particles_vector(void) {
-    ast_config cfg = small_robust_config();
-    cfg.shortlist = 9;
-    ast_tracker *t = tracker_new(&cfg, backends[0]);
-    float *vector = malloc((size_t)t->dim * sizeof *vector);
-    TEST_ASSERT_NOT_NULL(vector);
-    start(t);
-    for (int f = 1; f < 12; f++) {
-        const int models = ast_bag_count(t);
-        ast_particles p;
-        double last = INFINITY, first = -INFINITY, size = 0;
-        (void)step(t, f);
-        if (models == 0) continue;
-        TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
-        for (int d = 0; d < t->dim; d++) size += (double)t->direction[d] * (double)t->direction[d];
-        const double slack = 1e-5 * sqrt(size); /* vectors are about of length 1 */
-        for (int i = 0; i < p.count; i++) {
-            const float w = t->box_width * p.scale[i], h = t->box_height * p.scale[i];
-            const ast_box box = {p.x[i] - 0.5f * w, p.y[i] - 0.5f * h, w, h}, window = ast_view_box(&t->view, &box);
-            double along = 0;
-            ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
-            for (int d = 0; d < t->dim; d++) along += (double)t->direction[d] * (double)vector[d];
-            TEST_ASSERT_DOUBLE_WITHIN(slack, along, (double)t->promise[i]);
-            if (i < p.scored)
-                last = fmin(last, along);
-            else
-                first = fmax(first, along);
+    for (int patch = 0; patch <= 1; patch++) {
+        ast_config cfg = small_robust_config();
+        cfg.shortlist = 9;
+        cfg.patch_weight = (float)patch;
+        const int length = ast_features_glance_length(&cfg);
+        ast_tracker *t = tracker_new(&cfg, backends[0]);
+        float *vector = malloc((size_t)t->dim * sizeof *vector);
+        TEST_ASSERT_NOT_NULL(vector);
+        TEST_ASSERT_TRUE(patch ? length == cfg.patch_width * cfg.patch_height : length == t->dim);
+        start(t);
+        for (int f = 1; f < 12; f++) {
+            const int models = ast_bag_count(t);
+            ast_particles p;
+            double last = INFINITY, first = -INFINITY, size = 0;
+            (void)step(t, f);
+            if (models == 0) continue;
+            TEST_ASSERT_EQUAL_INT(AST_OK, ast_get_particles(t, &p));
+            for (int d = 0; d < length; d++) size += (double)t->direction[d] * (double)t->direction[d];
+            const double slack = 1e-5 * sqrt(size); /* vectors are about of length 1 */
+            for (int i = 0; i < p.count; i++) {
+                const float w = t->box_width * p.scale[i], h = t->box_height * p.scale[i];
+                const ast_box box = {p.x[i] - 0.5f * w, p.y[i] - 0.5f * h, w, h}, window = ast_view_box(&t->view, &box);
+                double along = 0;
+                ast_features_vector(&t->features, &t->desk->features, &t->view.image, &window, vector);
+                for (int d = 0; d < length; d++) along += (double)t->direction[d] * (double)vector[d];
+                TEST_ASSERT_DOUBLE_WITHIN(slack, along, (double)t->promise[i]);
+                if (i < p.scored)
+                    last = fmin(last, along);
+                else
+                    first = fmax(first, along);
+            }
+            TEST_ASSERT_TRUE(last >= first - 2 * slack);
         }
-        TEST_ASSERT_TRUE(last >= first - 2 * slack);
+        free(vector);
+        ast_free(t);
     }
-    free(vector);
-    ast_free(t);
 }
 
 /* What the next shortlist goes by: each model's part in the winner's weight, from the distances of the step. */
