@@ -3,6 +3,9 @@
  *
  *     least time = operations of the products / measured peak of such products + N x measured peak time of a patch
  *
+ * Where a shortlist is drawn up, all N particles need their glance (the first part of their samples, one inner product) and the
+ * shortlist the rest.
+ *
  * The peaks are the best of this run: of both backends, in the shapes that a step has; of a sampler stripped of all but the samples
  * (peak_patch.h) or the library's own, whichever is faster. Everything else that a step does, such as moving the cloud, the view
  * and its gradients, eigen-problems, distances and decision, counts as avoidable; the two parts share one core's units, so they add
@@ -12,6 +15,7 @@
 #include "clock.h"
 #include "peak_patch.h"
 #include "report.h"
+#include "shortlist.h"
 #include "table.h"
 
 #include <math.h>
@@ -51,13 +55,18 @@ static int product_columns(const ast_config *cfg) {
 
 /* Multiplications and additions of the candidates' product with them. */
 static double bag_operations(const ast_config *cfg) {
-    return 2.0 * cfg->particles * ast_feature_length(cfg) * product_columns(cfg);
+    return 2.0 * ast_shortlist_length(cfg) * ast_feature_length(cfg) * product_columns(cfg);
+}
+
+/* Of all candidates' glances, where there is a shortlist. */
+static double glance_operations(const ast_config *cfg) {
+    return ast_shortlist_length(cfg) < cfg->particles ? 2.0 * cfg->particles * ast_features_glance_length(cfg) : 0;
 }
 
 /* Of a background's metric: it solves a triangular system for each candidate and multiplies once more. */
 static double metric_operations(const ast_config *cfg) {
     const double b = cfg->background;
-    return cfg->particles * (b * b + 2 * b * product_columns(cfg));
+    return ast_shortlist_length(cfg) * (b * b + 2 * b * product_columns(cfg));
 }
 
 /* Operations a second of one sample; 0 when the backend fails. */
@@ -190,17 +199,18 @@ static double best_speed(const struct peak *p) {
 static bool find_peaks(const struct bench *b, const struct contender *c, struct peak *p) {
     const ast_config *cfg = &c[0].config;
     p->columns = product_columns(cfg);
-    p->operations = bag_operations(cfg) + metric_operations(cfg);
+    const int scored = ast_shortlist_length(cfg);
+    p->operations = bag_operations(cfg) + glance_operations(cfg) + metric_operations(cfg);
     for (int s = 0; s < SHAPES; s++) {
-        p->shape[s].name = s == 0 ? "a tile" : "all particles";
+        p->shape[s].name = s == 0 ? "a tile" : "all that are scored";
         p->shape[s].rows = s == 0 ? AST_TILE : p->columns; /* as the library calls it, and as suits a product best */
-        p->shape[s].cols = s == 0 ? p->columns : cfg->particles;
+        p->shape[s].cols = s == 0 ? p->columns : scored;
         p->shape[s].depth = ast_feature_length(cfg);
     }
     if (!product_peaks(b, p->shape, SHAPES, p->speed) || !patch_peaks(b, &c[0], p)) return false;
     p->products = p->operations / best_speed(p);
     p->product = bag_operations(cfg) / best_speed(p);
-    p->patches = cfg->particles * (p->patch + p->cells);
+    p->patches = cfg->particles * p->patch + scored * p->cells;
     for (int k = 0; k < BACKENDS; k++) {
         const double own = stage_spread(&c[k], STAGE_PATCHES).least;
         if (own < p->patches) p->patches = own; /* false for nan */
