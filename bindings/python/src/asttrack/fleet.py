@@ -2,13 +2,15 @@
 
 import logging
 import signal
+import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from distributed import CancelledError, Client, KilledWorker, LocalCluster, Worker, WorkerPlugin, as_completed
+from distributed import CancelledError, Client, KilledWorker, LocalCluster, Worker, WorkerPlugin
 
 from asttrack.evaluation.protocol import Run, Task, run
 from asttrack.evaluation.results import Measured, measure
@@ -19,6 +21,7 @@ from asttrack.failures import DataError, UsageError, unusable
 from asttrack.output import replacing, write_text
 
 RETRIES = 2  # of a task that raised; one whose worker died is moved to another by the scheduler itself
+POLL_SECONDS = 0.05  # between two looks at what is finished
 CONNECT_SECONDS = 60  # a busy machine's scheduler takes its time; where none listens, that is known at once
 COLUMNS = ("sequence", "tracker", "seed", "frames", "compared", "centre_error", "precision", "success", "lost")
 LAST_BOX = ("last_x", "last_y", "last_w", "last_h")
@@ -90,30 +93,62 @@ def track_all(
         for index, (directory, name) in enumerate(zip(directories, distinct_names(directories), strict=True))
     }
     outcomes: dict[int, Outcome] = {}
-    interrupted = False
-    try:
-        outcomes.update(progress(_finished(futures, directories), len(futures)))
-    except KeyboardInterrupt:
-        interrupted = True
-        client.cancel(list(futures))  # type: ignore[no-untyped-call]
+    with _Interrupt() as interrupt:
+        outcomes.update(progress(_finished(futures, directories, interrupt), len(futures)))
+        interrupted = interrupt.asked and len(outcomes) < len(futures)
+        if interrupted:
+            client.cancel(list(futures))  # type: ignore[no-untyped-call]
     results = [outcome for _, outcome in sorted(outcomes.items()) if isinstance(outcome, Measured)]
     failures = [outcome for _, outcome in sorted(outcomes.items()) if isinstance(outcome, str)]
     return results, failures, interrupted
 
 
-def _finished(futures: dict[Any, int], directories: list[Path]) -> Iterator[tuple[int, Outcome]]:
-    for future in as_completed(futures):  # type: ignore[no-untyped-call]
-        index = futures[future]
-        try:
-            yield index, future.result()
-        except KilledWorker as error:
-            yield index, f"{directories[index]}: the workers that took it died, the last one {error.last_worker.address}"
-        except CancelledError:
-            yield index, f"{directories[index]}: the cluster is gone"
-        except UsageError:
-            raise
-        except Exception as error:  # what a task raises is its own; the others go on
-            yield index, f"{directories[index]}: {type(error).__name__}: {error}"
+class _Interrupt:
+    """While it is entered an interrupt is noted, not raised: raised inside a lock of Dask's it would leave that in disorder.
+
+    Only the main thread is interrupted; in another one nothing changes.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+
+    def __enter__(self) -> "_Interrupt":
+        self._before = None
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGINT, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _note(self, _number: int, _frame: object) -> None:
+        self.asked = True
+
+
+def _finished(futures: dict[Any, int], directories: list[Path], interrupt: _Interrupt) -> Iterator[tuple[int, Outcome]]:
+    waiting = dict(futures)
+    while waiting and not interrupt.asked:
+        done = [future for future in waiting if future.done()]
+        if not done:
+            time.sleep(POLL_SECONDS)
+        for future in done:
+            index = waiting.pop(future)
+            yield index, _outcome(future, directories[index])
+
+
+def _outcome(future: Any, directory: Path) -> Outcome:
+    try:
+        outcome: Outcome = future.result()
+    except KilledWorker as error:
+        return f"{directory}: the workers that took it died, the last one {error.last_worker.address}"
+    except CancelledError:
+        return f"{directory}: the cluster is gone"
+    except UsageError:
+        raise
+    except Exception as error:  # what a task raises is its own; the others go on
+        return f"{directory}: {type(error).__name__}: {error}"
+    return outcome
 
 
 def result_line(measured: Measured) -> list[object]:
