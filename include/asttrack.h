@@ -158,7 +158,7 @@ typedef struct ast_config {
 
     /* Feature vector: grey patch, then oriented gradients, each times its weight; weight 0 leaves a part out, not both */
     float patch_weight;     /* 0 .. 100 */
-    float gradient_weight;  /* 0 .. 100; needs a view */
+    float gradient_weight;  /* 0 .. 100; needs a view; 0 alone in a build with AST_NO_GRADIENT */
     int32_t gradient_cells; /* cells in each axis, 2 .. AST_MAX_CELLS, 8 directions each */
 
     /* Patches (section 2.2) */

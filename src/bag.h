@@ -19,7 +19,7 @@ struct ast_bag {
     int oldest;             /* slot of the oldest model that may be replaced */
     int *rank;              /* capacity: basis vectors present */
     ast_real *basis_mean;   /* capacity x n: U'mu, kept because it changes only with the model */
-    float *say;             /* capacity: each model's share in the last winner's weight, 0 .. 1 */
+    float *say;             /* capacity: each model's share in the last winner's weight, 0 .. 1; all 0 where no shortlist asks */
     unsigned char *changed; /* a mark for each column that was written since the scoring last looked */
 };
 

@@ -87,10 +87,11 @@ int ast_winner(const struct ast_cloud *cloud, int count, const struct ast_expect
 }
 
 void ast_attribute(const float *distance, const struct ast_voice *voice, int models, float *say) {
+    const struct ast_kernels *kernels = ast_kernels();
     ast_real sum = 0;
     for (int j = 0; j < models; j++) {
         ast_real part = -((ast_real)distance[j] - (ast_real)voice[j].least) * voice[j].rate;
-        ast_kernels()->exponentials(&part, 1);
+        kernels->exponentials(&part, 1);
         part *= voice[j].share;
         sum += part;
         say[j] = (float)part;

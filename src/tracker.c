@@ -526,7 +526,8 @@ int ast_step(ast_tracker *t, const ast_frame *frame, ast_result *result) {
     t->guard = guard;
     t->models = models;
     copy_cloud(&t->cloud, &t->proposal);
-    if (t->bag.count > 0) ast_attribute(t->distance + (size_t)best * (size_t)models, t->voice, models, t->bag.say);
+    if (t->scored < t->cloud.count) /* the next shortlist asks */
+        ast_attribute(t->distance + (size_t)best * (size_t)models, t->voice, models, t->bag.say);
     t->since_model = model_due ? 0 : t->since_model + 1;
     if (trusted) {
         ast_history_push(&t->history, vector);
